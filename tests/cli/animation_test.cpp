@@ -49,8 +49,7 @@ class Gltf {
         const std::size_t at = begin + 4 * (i * width + k);
         float number = 0;
         std::memcpy(&number, binary_.data() + at, 4);
-        result.back().push_back(accessor["componentType"] == 5126 ? number
-                                                                  : static_cast<double>(integer(binary_, at)));
+        result.back().push_back(accessor["componentType"] == 5126 ? number : static_cast<double>(integer(binary_, at)));
       }
     }
     return result;
@@ -155,8 +154,7 @@ TEST_CASE("animation: keyframes of a file are the rows of the run, upright, with
     CHECK(std::abs(e3[0] + std::sin(theta)) < 2 * single);
     CHECK(std::abs(e3[1]) < single);
     CHECK(std::abs(e3[2] - std::cos(theta)) < 2 * single);
-    if (k > 0)
-      CHECK(q[k][0] * q[k - 1][0] + q[k][1] * q[k - 1][1] + q[k][2] * q[k - 1][2] + q[k][3] * q[k - 1][3] > 0);
+    if (k > 0) CHECK(q[k][0] * q[k - 1][0] + q[k][1] * q[k - 1][1] + q[k][2] * q[k - 1][2] + q[k][3] * q[k - 1][3] > 0);
   }
   // A spring of length 1 along its third axis, from the bar to the bob.
   const auto [times, length] = gltf.channel("spring", "scale");
@@ -167,7 +165,7 @@ TEST_CASE("animation: keyframes of a file are the rows of the run, upright, with
     for (std::size_t i = 0; i < 3; ++i) CHECK(std::abs(foot[k][i] + along[i] - bob[k][i]) < 5 * single);
   }
   // Gravity acts along -E3, and the second axis of a file is up.
-  const Json& root = gltf.json["nodes"][0];
+  const Json& root = gltf.json["nodes"].at(gltf.json["scenes"][0]["nodes"][0].get<std::size_t>());
   const std::array<double, 3> up = turned(root["rotation"].get<std::vector<double>>(), {0, 0, 1});
   CHECK(up[1] == doctest::Approx(1));
   CHECK(root["children"].size() == gltf.json["nodes"].size() - 1);

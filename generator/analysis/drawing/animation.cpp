@@ -184,8 +184,7 @@ class Animator {
     const DrawnPlace& place = parts_.places[placed.place];
     const auto body = std::find_if(parts_.bodies.begin(), parts_.bodies.end(),
                                    [&](const DrawnBody& b) { return b.place == placed.place; });
-    AnimatedNode node{place.name,          AnimatedKind::body, mesh_of(placed.solids, extent_),
-                      positions(place.at), {},                 {}};
+    AnimatedNode node{place.name, AnimatedKind::body, mesh_of(placed.solids, extent_), positions(place.at), {}, {}};
     if (body != parts_.bodies.end()) {
       for (const std::vector<double>& row : rows_) {
         Eigen::Matrix3d axes;
@@ -224,9 +223,8 @@ class Animator {
     return result;
   }
   bool touches_surface(std::size_t place) const {
-    return std::any_of(parts_.surfaces.begin(), parts_.surfaces.end(), [place](const DrawnSurface& surface) {
-      return surface.place == place && surface.has_contact;
-    });
+    return std::any_of(parts_.surfaces.begin(), parts_.surfaces.end(),
+                       [place](const DrawnSurface& surface) { return surface.place == place && surface.has_contact; });
   }
 
   /// Whether the ends keep their distance: a line between others is no part of the system.
@@ -282,8 +280,9 @@ Animation animation(const DrawnParts& parts, const std::vector<double>& sizes, s
                     const std::vector<std::vector<double>>& rows, const std::optional<std::array<double, 3>>& down) {
   Animator animator(parts, sizes, rows);
   Animation result{std::move(t), animator.run(), Eigen::Quaterniond::Identity()};
-  const Point up = down ? Point(-Point((*down)[0], (*down)[1], (*down)[2]))
-                        : animator.is_flat() ? Point(Point::UnitY()) : Point(Point::UnitZ());
+  const Point up = down                 ? Point(-Point((*down)[0], (*down)[1], (*down)[2]))
+                   : animator.is_flat() ? Point(Point::UnitY())
+                                        : Point(Point::UnitZ());
   result.upright = Eigen::Quaterniond::FromTwoVectors(up, Point::UnitY());
   return result;
 }

@@ -40,8 +40,8 @@ struct Animation {
   Eigen::Quaterniond upright = Eigen::Quaterniond::Identity();  // turns the fixed axes so that the second one is up
 };
 
-/// rows: values of the vectors at each time, in the order of Drawing::outputs(). down: direction of gravity; none: E3 is
-/// up, or E2 if the motion is in the plane of E1 and E2. Values that are not finite leave out the node.
+/// rows: values of the vectors at each time, in the order of Drawing::outputs(). down: direction of gravity; none: E3
+/// is up, or E2 if the motion is in the plane of E1 and E2. Values that are not finite leave out the node.
 Animation animation(const DrawnParts& parts, const std::vector<double>& sizes, std::vector<double> t,
                     const std::vector<std::vector<double>>& rows, const std::optional<std::array<double, 3>>& down);
 

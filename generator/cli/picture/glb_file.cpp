@@ -46,37 +46,34 @@ void append(std::string& bytes, T value) {
 class Document {
  public:
   Document(const Animation& animation, const std::string& title) {
-    json_ = {{"asset", {{"version", "2.0"}, {"generator", "eomgen"}}},
-             {"scene", 0},
-             {"scenes", {{{"name", title}, {"nodes", {0}}}}},
-             {"nodes", {{{"name", title}, {"rotation", quaternion(animation.upright)}}}},
-             {"meshes", Json::array()},
-             {"materials", Json::array()},
-             {"accessors", Json::array()},
-             {"bufferViews", Json::array()}};
     for (const Colour& c : colours) {
-      json_["materials"].push_back({{"name", c.name},
-                                    {"doubleSided", true},
-                                    {"pbrMetallicRoughness",
-                                     {{"baseColorFactor", {c.red, c.green, c.blue, 1.0}},
-                                      {"metallicFactor", 0.1},
-                                      {"roughnessFactor", 0.6}}}});
+      materials_.push_back(
+          {{"name", c.name},
+           {"doubleSided", true},
+           {"pbrMetallicRoughness",
+            {{"baseColorFactor", {c.red, c.green, c.blue, 1.0}}, {"metallicFactor", 0.1}, {"roughnessFactor", 0.6}}}});
     }
     select_keyframes(animation.t);
     const std::size_t times = floats(times_, 1, true, 0);
-    Json motion{{"name", "run"}, {"channels", Json::array()}, {"samplers", Json::array()}};
+    for (const AnimatedNode& node : animation.nodes) add(node, times);
+    // The root, which turns the others upright, is the last node.
     Json children = Json::array();
-    for (const AnimatedNode& node : animation.nodes) {
-      children.push_back(json_["nodes"].size());
-      add(node, times, motion);
-    }
-    json_["nodes"][0]["children"] = std::move(children);
-    if (!motion["channels"].empty()) json_["animations"] = Json::array({std::move(motion)});
-    json_["buffers"] = Json::array({{{"byteLength", bytes_.size()}}});
+    for (std::size_t i = 0; i < animation.nodes.size(); ++i) children.push_back(i);
+    nodes_.push_back({{"name", title}, {"rotation", quaternion(animation.upright)}, {"children", children}});
+    json_ = {{"asset", {{"version", "2.0"}, {"generator", "eomgen"}}},
+             {"scene", 0},
+             {"scenes", Json::array({{{"name", title}, {"nodes", Json::array({animation.nodes.size()})}}})},
+             {"nodes", nodes_},
+             {"meshes", meshes_},
+             {"materials", materials_},
+             {"accessors", accessors_},
+             {"bufferViews", views_},
+             {"buffers", Json::array({{{"byteLength", bytes_.size()}}})},
+             {"animations", Json::array({{{"name", "run"}, {"channels", channels_}, {"samplers", samplers_}}})}};
   }
 
   std::string file() const {
-    std::string text = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
+    std::string text = json_.dump();
     text.resize((text.size() + 3) / 4 * 4, ' ');
     std::string result;
     append(result, magic);
@@ -91,9 +88,7 @@ class Document {
   }
 
  private:
-  static Json quaternion(const Eigen::Quaterniond& q) {
-    return {static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z()), static_cast<float>(q.w())};
-  }
+  static Json quaternion(const Eigen::Quaterniond& q) { return Json::array({q.x(), q.y(), q.z(), q.w()}); }
 
   /// Keyframes whose times differ in single precision.
   void select_keyframes(const std::vector<double>& t) {
@@ -109,8 +104,8 @@ class Document {
   std::size_t view(std::size_t begin, int target) {
     Json entry{{"buffer", 0}, {"byteOffset", begin}, {"byteLength", bytes_.size() - begin}};
     if (target != 0) entry["target"] = target;
-    json_["bufferViews"].push_back(std::move(entry));
-    return json_["bufferViews"].size() - 1;
+    views_.push_back(std::move(entry));
+    return views_.size() - 1;
   }
 
   /// An accessor of tuples of `width` floats.
@@ -123,16 +118,17 @@ class Document {
                {"count", values.size() / width},
                {"type", types[width]}};
     if (bounds) {
-      std::vector<float> low(width, std::numeric_limits<float>::max()), high(width, std::numeric_limits<float>::lowest());
+      std::vector<float> low(width, std::numeric_limits<float>::max()),
+          high(width, std::numeric_limits<float>::lowest());
       for (std::size_t i = 0; i < values.size(); ++i) {
         low[i % width] = std::min(low[i % width], values[i]);
         high[i % width] = std::max(high[i % width], values[i]);
       }
-      entry["min"] = low;
-      entry["max"] = high;
+      entry["min"] = Json(low);
+      entry["max"] = Json(high);
     }
-    json_["accessors"].push_back(std::move(entry));
-    return json_["accessors"].size() - 1;
+    accessors_.push_back(std::move(entry));
+    return accessors_.size() - 1;
   }
 
   static std::vector<float> flattened(const std::vector<Point>& points) {
@@ -148,23 +144,22 @@ class Document {
     for (const auto& triangle : triangles) {
       for (const std::uint32_t i : triangle) append(bytes_, i);
     }
-    json_["accessors"].push_back({{"bufferView", view(begin, index_buffer)},
-                                  {"componentType", unsigned_type},
-                                  {"count", 3 * triangles.size()},
-                                  {"type", "SCALAR"}});
-    return json_["accessors"].size() - 1;
+    accessors_.push_back({{"bufferView", view(begin, index_buffer)},
+                          {"componentType", unsigned_type},
+                          {"count", 3 * triangles.size()},
+                          {"type", "SCALAR"}});
+    return accessors_.size() - 1;
   }
 
-  void add(const AnimatedNode& node, std::size_t times, Json& motion) {
+  void add(const AnimatedNode& node, std::size_t times) {
     const std::size_t points = floats(flattened(node.mesh.points), 3, true, vertex_buffer),
                       normals = floats(flattened(node.mesh.normals), 3, false, vertex_buffer);
-    json_["meshes"].push_back({{"name", node.name},
-                               {"primitives",
-                                {{{"attributes", {{"POSITION", points}, {"NORMAL", normals}}},
-                                  {"indices", indices(node.mesh.triangles)},
-                                  {"material", static_cast<std::size_t>(node.kind)}}}}});
-    const std::size_t index = json_["nodes"].size();
-    json_["nodes"].push_back({{"name", node.name}, {"mesh", json_["meshes"].size() - 1}});
+    const Json primitive{{"attributes", {{"POSITION", points}, {"NORMAL", normals}}},
+                         {"indices", indices(node.mesh.triangles)},
+                         {"material", static_cast<std::size_t>(node.kind)}};
+    meshes_.push_back({{"name", node.name}, {"primitives", Json::array({primitive})}});
+    const std::size_t index = nodes_.size();
+    nodes_.push_back({{"name", node.name}, {"mesh", meshes_.size() - 1}});
     const auto channel = [&](const char* path, std::size_t width, bool exists,
                              const std::function<std::array<double, 4>(std::size_t)>& at) {
       if (!exists) return;
@@ -173,10 +168,8 @@ class Document {
         const std::array<double, 4> value = at(k);
         for (std::size_t i = 0; i < width; ++i) values.push_back(static_cast<float>(value[i]));
       }
-      motion["channels"].push_back(
-          {{"sampler", motion["samplers"].size()}, {"target", {{"node", index}, {"path", path}}}});
-      motion["samplers"].push_back(
-          {{"input", times}, {"interpolation", "LINEAR"}, {"output", floats(values, width, false, 0)}});
+      channels_.push_back({{"sampler", samplers_.size()}, {"target", {{"node", index}, {"path", path}}}});
+      samplers_.push_back({{"input", times}, {"interpolation", "LINEAR"}, {"output", floats(values, width, false, 0)}});
     };
     channel("translation", 3, !node.translation.empty(), [&](std::size_t k) -> std::array<double, 4> {
       const Point& p = node.translation[k];
@@ -192,6 +185,8 @@ class Document {
   }
 
   Json json_;
+  Json nodes_ = Json::array(), meshes_ = Json::array(), materials_ = Json::array(), accessors_ = Json::array(),
+       views_ = Json::array(), channels_ = Json::array(), samplers_ = Json::array();
   std::string bytes_;
   std::vector<float> times_;
   std::vector<std::size_t> keyframes_;
