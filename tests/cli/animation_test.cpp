@@ -92,7 +92,7 @@ std::array<double, 3> turned(const std::vector<double>& q, const std::array<doub
           v[2] + w * t[2] + x * t[1] - y * t[0]};
 }
 
-constexpr const char* swing = R"(format = 1
+constexpr const char* swing = R"toml(format = 1
 title = "A <swing> & \"spring\""
 [parameters]
 m = "1 kg"
@@ -123,7 +123,7 @@ spring = { between = ["tip", "bob"], stiffness = "k", length = "L/4" }
 t = [1, 4]
 initial = { theta = 1, x = 0.3, z = -1.2 }
 outputs = ["bob.position", "bar.position"]
-)";
+)toml";
 
 }  // namespace
 
