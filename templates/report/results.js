@@ -24,7 +24,7 @@ class Results {
     this.heading("At the end");
     this.table(["", "value"], [["t", motion.t[last]], ...states, ...others]);
     if (this.kept.length > 0) {
-      this.heading("Kept");
+      this.heading("Conserved");
       this.table(["", "at the start", "largest relative drift"], this.kept.map((of) => {
         const values = motion.curve(of), size = Math.max(...values.map(Math.abs));
         return [of.name, values[0], size > 0 ? (Math.max(...values.map((v) => Math.abs(v - values[0]))) / size).toExponential(1) : 0];

@@ -26,7 +26,7 @@ std::string bash(const Declaration& declared) {
     }
   }
   return fmt::format(
-      R"bash(# What bash completes after eomgen; sourced, or put where bash-completion finds it.
+      R"bash(# Completions of eomgen for bash; source it, or put it into a folder of bash-completion.
 _eomgen() {{
   local word="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD-1]}}" command="${{COMP_WORDS[1]}}"
   local flags="" words="" typed
@@ -102,7 +102,7 @@ std::string zsh(const Declaration& declared) {
 }
 
 std::string fish(const Declaration& declared) {
-  std::string text = "# What fish completes after eomgen; put into a folder of $fish_complete_path as eomgen.fish.\n";
+  std::string text = "# Completions of eomgen for fish; put it into a folder of $fish_complete_path as eomgen.fish.\n";
   for (const DeclaredCommand& sub : declared.commands()) {
     text += fmt::format("complete -c eomgen -n __fish_use_subcommand -f -a {} -d {}\n", sub.name,
                         quoted(sub.summary, "\\'"));

@@ -211,7 +211,7 @@ void add_run(Html& html, const pipeline::Simulation& simulation, const Json& run
          i["max_relative_drift"].is_null() ? "" : fmt::format("{:.1e}", i["max_relative_drift"].get<double>())});
   }
   if (!rows.empty()) {
-    html.heading(3, "Kept");
+    html.heading(3, "Conserved");
     html.table({"", "at the start", "largest relative drift"}, rows, {1, 2});
   }
   rows.clear();
