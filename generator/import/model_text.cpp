@@ -54,7 +54,10 @@ std::string toml_text(const std::string& text) {
 }
 
 ModelWriter::ModelWriter(const Robot& robot, const Tree& tree, const Assembly& assembly, const ImportOptions& options)
-    : robot_(robot), tree_(tree), assembly_(assembly), options_(options), findings_(robot.findings) {}
+    : robot_(robot), tree_(tree), assembly_(assembly), options_(options), findings_(robot.findings) {
+  for (const Link& link : robot.links)
+    for (const Shape& shape : link.shapes) meshes_ += shape.kind == ShapeKind::mesh ? 1 : 0;
+}
 
 std::string ModelWriter::value(const Number& number, const std::string& unit, const std::string& name) {
   if (number.is_zero()) return "0";
@@ -314,8 +317,7 @@ void ModelWriter::write_shapes(std::size_t index) {
 
 void ModelWriter::write_shape(const Shape& shape, const Pose& pose, const Vector& centre,
                               std::vector<std::string>& texts) {
-  if (shape.kind == ShapeKind::mesh)
-    return findings_.add("meshes that are not drawn", "mesh files are not read", shape.where);
+  if (shape.kind == ShapeKind::mesh) return write_mesh(shape, pose, centre, texts);
   const auto length = [](const Number& number) { return number.is_zero() ? std::string("0") : to_text(number) + " m"; };
   const Vector middle = pose.p - centre;
   std::string at = fmt::format(", at = {}", triple({length(middle[0]), length(middle[1]), length(middle[2])}));

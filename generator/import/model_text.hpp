@@ -32,6 +32,7 @@ class ModelWriter {
   void write_fused(std::size_t index);
   void write_shapes(std::size_t index);
   void write_shape(const Shape& shape, const Pose& pose, const Vector& centre, std::vector<std::string>& texts);
+  void write_mesh(const Shape& shape, const Pose& pose, const Vector& centre, std::vector<std::string>& texts);
   void write_forces();
   void write_drives();
   std::string drive_force(std::size_t joint);
@@ -68,6 +69,7 @@ class ModelWriter {
   std::vector<CoordinateText> coordinates_;
   std::string parameters_, inputs_, body_, draw_;
   bool gravity_works_ = true;
+  std::size_t meshes_ = 0, mesh_bytes_ = 0;  // of the robot; read so far
   ImportedModel result_;
 };
 

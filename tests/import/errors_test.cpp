@@ -166,7 +166,7 @@ TEST_CASE("import: limits, friction, drives, stops, shapes and what is left out 
   CHECK(imported.coordinates == std::vector<std::string>{"j"});  // `free` moves no mass
   CHECK(imported.inputs == std::vector<std::string>{"u_j"});
   CHECK(imported.constraints == 2);
-  for (const char* what : {"<mesh>", "<collision>", "<gazebo> of <robot>",
+  for (const char* what : {"meshes that are not drawn", "<collision>", "<gazebo> of <robot>",
                            "joints that move no mass", "friction", "decimals of pi"}) {
     CAPTURE(what);
     CHECK(reports(imported, what));
