@@ -3,7 +3,9 @@
 """Imports every URDF file of a folder and prints a table: coordinates, operations, time, agreement.
 
     bench/robots.py PROGRAM FOLDER [--floating]
+    bench/robots.py PROGRAM FOLDER --beside
 
+The second form prints forward dynamics of URDF and MJCF files beside other programs (bench/robots_beside.py).
 `differs` is the largest difference of the emitted accelerations from a Newton-Euler recursion on the XML tree, which is
 part of this file and shares nothing with the generator, relative to the largest acceleration of each state.
 """
@@ -250,7 +252,11 @@ def main():
     parser.add_argument("program")
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--floating", action="store_true")
+    parser.add_argument("--beside", action="store_true", help="beside other programs for rigid bodies")
     options = parser.parse_args()
+    if options.beside:
+        import robots_beside
+        return robots_beside.table(options.program, options.folder)
     print("| robot | links | coordinates | formulation | operations | ns | differs | emit s | run s | outcome |")
     print("|---|---|---|---|---|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as scratch:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Robot files of other programs (URDF) as models. In: a file. Out: the text of a model file, and what of the robot file
-// it does not contain.
+// Robot files of other programs (URDF, MJCF) as models. In: a file. Out: the text of a model file, and what of the
+// robot file it does not contain.
 #pragma once
 
 #include <cstddef>

@@ -49,7 +49,10 @@ ImportedModel import_text(const std::string& file, const std::string& bytes, con
 }
 
 ImportedModel import_file(const std::string& path, const ImportOptions& options) {
-  return import_text(path, read_bytes(path), options);
+  ImportOptions here = options;
+  here.folder = std::filesystem::path(path).parent_path().string();
+  if (here.folder.empty()) here.folder = ".";
+  return import_text(path, read_bytes(path), here);
 }
 
 }  // namespace eomgen::import

@@ -25,6 +25,7 @@ struct ImportOptions {
   std::vector<std::string> stops;  // joints whose limits become end stops, by their names in the file
   bool parameters = false;         // masses, centres, tensors, damping as parameters
   bool exact_angles = false;       // 1.5708 stays 1.5708
+  std::string folder;              // of mesh files; empty: none is read
 };
 
 /// A name that is not legal or not unique in a model.

@@ -54,7 +54,10 @@ std::string toml_text(const std::string& text) {
 }
 
 ModelWriter::ModelWriter(const Robot& robot, const Tree& tree, const Assembly& assembly, const ImportOptions& options)
-    : robot_(robot), tree_(tree), assembly_(assembly), options_(options), findings_(robot.findings) {}
+    : robot_(robot), tree_(tree), assembly_(assembly), options_(options), findings_(robot.findings) {
+  for (const Link& link : robot.links)
+    for (const Shape& shape : link.shapes) meshes_ += shape.kind == ShapeKind::mesh ? 1 : 0;
+}
 
 std::string ModelWriter::value(const Number& number, const std::string& unit, const std::string& name) {
   if (number.is_zero()) return "0";
@@ -85,7 +88,9 @@ std::string ModelWriter::along(const Vector& v, const std::string& axes, const s
 
 bool ModelWriter::is_actuated(std::size_t joint) const {
   const JointType type = robot_.joints[joint].type;
-  if (type == JointType::floating || type == JointType::planar || tree_.master[joint] != no_index) return false;
+  if (type == JointType::floating || type == JointType::planar || type == JointType::ball) return false;
+  if (!robot_.joints[joint].drives.empty()) return options_.actuation != Actuation::none;
+  if (tree_.master[joint] != no_index) return false;
   return options_.actuation == Actuation::all ||
          (options_.actuation == Actuation::transmissions && robot_.joints[joint].transmission);
 }
@@ -99,9 +104,11 @@ std::vector<std::size_t> ModelWriter::moving_joints() const {
 
 void ModelWriter::name_free_coordinates(const std::string& prefix, std::size_t joint, const std::string& comment) {
   const auto add = [&](const char* part, const char* unit, Number start) {
-    coordinates_.push_back({names_.claim(prefix + "_" + part, "_q"), unit, comment, joint, start});
+    coordinates_.push_back({names_.claim(prefix + "_" + part, "_q"), unit, comment, joint, start, ""});
   };
-  for (const char* part : {"x", "y", "z"}) add(part, "m", {});
+  const Vector start = joint == no_index ? Vector{} : robot_.joints[joint].start;
+  const bool has_place = joint == no_index || robot_.joints[joint].type == JointType::floating;
+  for (std::size_t k = 0; has_place && k < 3; ++k) add(std::array{"x", "y", "z"}[k], "m", start[k]);
   if (options_.attitude == Attitude::euler)
     for (const char* part : {"yaw", "pitch", "roll"}) add(part, "rad", {});
   else
@@ -123,7 +130,7 @@ void ModelWriter::name_coordinates() {
     add("upper", joint.limits.upper);
     add("effort", joint.limits.effort);
     add("velocity", joint.limits.velocity);
-    if (joint.type == JointType::floating) {
+    if (joint.type == JointType::floating || joint.type == JointType::ball) {
       joint_names_[j] = names_.claim(joint.name, "_joint");
       name_free_coordinates(joint_names_[j], j, comment);
       continue;
@@ -131,7 +138,7 @@ void ModelWriter::name_coordinates() {
     if (joint.type == JointType::planar) {
       joint_names_[j] = names_.claim(joint.name, "_joint");
       for (const auto& [part, unit] : {std::pair{"u", "m"}, std::pair{"v", "m"}, std::pair{"angle", "rad"}})
-        coordinates_.push_back({names_.claim(joint_names_[j] + "_" + part, "_q"), unit, comment, j, {}});
+        coordinates_.push_back({names_.claim(joint_names_[j] + "_" + part, "_q"), unit, comment, j, {}, ""});
       continue;
     }
     joint_names_[j] = names_.claim(joint.name, "_joint");
@@ -139,7 +146,10 @@ void ModelWriter::name_coordinates() {
     const Limits& limits = joint.limits;
     if (limits.lower && (limits.lower->value > 0 || limits.upper->value < 0))
       start = Number((limits.lower->value + limits.upper->value) / 2);
-    coordinates_.push_back({joint_names_[j], joint.type == JointType::prismatic ? "m" : "rad", comment, j, start});
+    const bool is_length = joint.type == JointType::prismatic;
+    coordinates_.push_back({joint_names_[j], is_length ? "m" : "rad", comment, j, start, ""});
+    if (!joint.armature.is_zero())
+      coordinates_.back().armature = value(joint.armature, is_length ? "kg" : "kg*m^2", "a_" + joint_names_[j]);
     if (joint_names_[j] != joint.name) result_.renamings.push_back({"joint", joint.name, joint_names_[j]});
   }
   for (std::size_t i = 0; i < robot_.links.size(); ++i) {
@@ -270,8 +280,8 @@ void ModelWriter::write_joint(std::size_t index) {
            "turn the axes of the joint by rpy of its <origin>, so that xyz=\"0 0 1\"");
     motion = term(stem + "_u", (unit->first + 1) % 3) + term(stem + "_v", (unit->first + 2) % 3);
     rotation = fmt::format("{{ axis = \"{}\", angle = \"{}_angle\" }}", direction, stem);
-  } else if (joint.type == JointType::floating) {
-    motion = term(stem + "_x", 0) + term(stem + "_y", 1) + term(stem + "_z", 2);
+  } else if (joint.type == JointType::floating || joint.type == JointType::ball) {
+    if (joint.type == JointType::floating) motion = term(stem + "_x", 0) + term(stem + "_y", 1) + term(stem + "_z", 2);
     rotation = rotation_of(stem, true);
   }
   origins_.push_back(place_name(part.parent));
@@ -307,6 +317,7 @@ void ModelWriter::write_shapes(std::size_t index) {
 
 void ModelWriter::write_shape(const Shape& shape, const Pose& pose, const Vector& centre,
                               std::vector<std::string>& texts) {
+  if (shape.kind == ShapeKind::mesh) return write_mesh(shape, pose, centre, texts);
   const auto length = [](const Number& number) { return number.is_zero() ? std::string("0") : to_text(number) + " m"; };
   const Vector middle = pose.p - centre;
   std::string at = fmt::format(", at = {}", triple({length(middle[0]), length(middle[1]), length(middle[2])}));
@@ -324,7 +335,14 @@ void ModelWriter::write_shape(const Shape& shape, const Pose& pose, const Vector
       return findings_.add("turned shapes", "shapes are drawn along the axes of their link", shape.where);
     if (found) axis[k] = found->first;
   }
-  if (shape.kind == ShapeKind::cylinder) {
+  if (shape.kind == ShapeKind::cylinder || shape.kind == ShapeKind::capsule) {
+    for (const long double end : {-0.5L, 0.5L}) {
+      if (shape.kind != ShapeKind::capsule) break;
+      Vector ball = middle;
+      ball[axis[2]] = ball[axis[2]] + Number(end * shape.size[1].value);
+      texts.push_back(fmt::format("{{ sphere = \"{}\", at = {} }}", length(shape.size[0]),
+                                  triple({length(ball[0]), length(ball[1]), length(ball[2])})));
+    }
     texts.push_back(fmt::format("{{ cylinder = [\"{}\", \"{}\"], axis = \"e{}\"{} }}", length(shape.size[0]),
                                 length(shape.size[1]), axis[2] + 1, at));
     return;

@@ -20,6 +20,7 @@ class ModelWriter {
     std::string name, unit, comment;
     std::size_t joint = no_index;
     Number start;
+    std::string armature;
   };
 
   void name_coordinates();
@@ -31,13 +32,19 @@ class ModelWriter {
   void write_fused(std::size_t index);
   void write_shapes(std::size_t index);
   void write_shape(const Shape& shape, const Pose& pose, const Vector& centre, std::vector<std::string>& texts);
+  void write_mesh(const Shape& shape, const Pose& pose, const Vector& centre, std::vector<std::string>& texts);
   void write_forces();
   void write_drives();
+  std::string drive_force(std::size_t joint);
+  void write_springs();
   void write_dissipation();
   void write_constraints();
   void write_stops(std::size_t joint);
   void write_scene();
   std::string header() const;
+  bool has_gravity_along_z() const;
+  bool does_gravity_work() const;
+  std::string gravity_text() const;
 
   /// A number with its unit as a value: "0.5 m", or the name of a new parameter.
   std::string value(const Number& number, const std::string& unit, const std::string& name);
@@ -61,6 +68,8 @@ class ModelWriter {
   std::vector<std::string> origins_;                   // of parts: a place
   std::vector<CoordinateText> coordinates_;
   std::string parameters_, inputs_, body_, draw_;
+  bool gravity_works_ = true;
+  std::size_t meshes_ = 0, mesh_bytes_ = 0;  // of the robot; read so far
   ImportedModel result_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <array>
 
+#include "import/mjcf.hpp"
 #include "import/urdf.hpp"
 
 namespace eomgen::import {
@@ -8,6 +9,7 @@ namespace eomgen::import {
 std::span<const Format> formats() {
   static constexpr std::array entries{
       Format{"urdf", "Unified Robot Description Format", "robot", read_urdf},
+      Format{"mjcf", "the XML format of MuJoCo", "mujoco", read_mjcf},
   };
   return entries;
 }

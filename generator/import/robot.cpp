@@ -11,6 +11,7 @@ const char* name_of(JointType type) {
     case JointType::fixed: return "fixed";
     case JointType::floating: return "floating";
     case JointType::planar: return "planar";
+    case JointType::ball: return "ball";
   }
   return "fixed";
 }

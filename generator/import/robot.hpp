@@ -11,14 +11,16 @@
 
 namespace eomgen::import {
 
-enum class ShapeKind { box, cylinder, sphere };
+enum class ShapeKind { box, cylinder, capsule, sphere, mesh };
 
-/// A shape for drawing: sides of a box; radius and length of a cylinder along its z axis; radius of a sphere.
+/// A shape for drawing: sides of a box; radius and length of a cylinder along its z axis, which in a capsule is between
+/// two half spheres; radius of a sphere; factors of a mesh along its axes.
 struct Shape {
   ShapeKind kind;
   Vector size;
   Pose pose;
   SourceLocation where;
+  std::string file = {};  // of a mesh, as the robot file names it
 };
 
 struct Link {
@@ -28,7 +30,7 @@ struct Link {
   std::vector<Shape> shapes;
 };
 
-enum class JointType { revolute, continuous, prismatic, fixed, floating, planar };
+enum class JointType { revolute, continuous, prismatic, fixed, floating, planar, ball };
 const char* name_of(JointType type);
 
 struct Limits {
@@ -43,6 +45,15 @@ struct Mimic {
   SourceLocation where;
 };
 
+/// An input u of a joint with one coordinate q. The force on q is gear (gain u + offset + stiffness l + damping l_dot)
+/// with the length l = gear q of the drive.
+struct Drive {
+  enum class Input { force, position, velocity };
+  std::string name, comment;
+  Input input = Input::force;
+  Number gear, gain, offset, stiffness, damping;
+};
+
 struct Joint {
   std::string name;
   SourceLocation where;
@@ -52,9 +63,12 @@ struct Joint {
   Pose origin;  // of the child's axes at zero, in the parent's
   Vector axis;  // a unit vector along the child's axes; of fixed and floating joints unused
   Limits limits;
-  Number damping, friction;
+  Number damping, friction, armature;
+  Number stiffness, spring_reference;  // the force -stiffness (q - spring_reference)
+  Vector start;                        // of a floating joint: its place at the start
   std::optional<Mimic> mimic;
   std::optional<std::string> transmission;  // its name, if there is one
+  std::vector<Drive> drives;
 };
 
 struct Robot {
@@ -62,6 +76,7 @@ struct Robot {
   SourceLocation where;
   std::vector<Link> links;
   std::vector<Joint> joints;
+  Vector gravity{Number(), Number(), Number(-9.81L, "-9.81")};
   Findings findings;
 };
 

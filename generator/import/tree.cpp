@@ -92,7 +92,7 @@ void connect_mimics(const Robot& robot, Tree& tree) {
     const Mimic& mimic = *robot.joints[j].mimic;
     tree.master[j] = find_name(joints, "joint", mimic.master, mimic.where);
     const JointType type = robot.joints[tree.master[j]].type;
-    if (type == JointType::fixed || type == JointType::floating || type == JointType::planar)
+    if (type == JointType::fixed || type == JointType::floating || type == JointType::planar || type == JointType::ball)
       fail(
           mimic.where,
           fmt::format("{} is a {} joint, which has no coordinate to follow", model::quote(mimic.master), name_of(type)),

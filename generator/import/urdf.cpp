@@ -131,8 +131,15 @@ class UrdfReader {
       } else if (child.name == "sphere") {
         shape.kind = ShapeKind::sphere;
         shape.size[0] = number_of(require_attribute(child, "radius"));
+      } else if (child.name == "mesh") {
+        shape.kind = ShapeKind::mesh;
+        shape.file = require_attribute(child, "filename").value;
+        shape.size = {Number(1, "1"), Number(1, "1"), Number(1, "1")};
+        if (const Attribute* scale = child.find("scale")) shape.size = vector_of(*scale);
+        link.shapes.push_back(std::move(shape));
+        continue;
       } else {
-        omit(child, "boxes, cylinders and spheres are drawn; meshes are not read");
+        omit(child, "boxes, cylinders, spheres and meshes are drawn");
         continue;
       }
       const std::size_t lengths = shape.kind == ShapeKind::box ? 3 : shape.kind == ShapeKind::cylinder ? 2 : 1;

@@ -23,6 +23,10 @@ void ModelWriter::write_drives() {
   for (const std::size_t j : moving_joints()) {
     if (!is_actuated(j)) continue;
     const Joint& joint = robot_.joints[j];
+    if (!joint.drives.empty()) {
+      entries += fmt::format("{} = \"{}\"\n", joint_names_[j], drive_force(j));
+      continue;
+    }
     const std::string input = names_.claim("u_" + joint_names_[j], "_input");
     std::string comment = fmt::format("line {}", joint.where.line);
     if (joint.transmission) comment = fmt::format("transmission {}", quoted(*joint.transmission));
@@ -35,6 +39,55 @@ void ModelWriter::write_drives() {
   if (!entries.empty())
     body_ += fmt::format("\n# Drives: an input for each joint.\n[[force]]\nname = \"{}\"\n[force.generalized]\n{}",
                          names_.claim("drives", "_force"), entries);
+}
+
+std::string ModelWriter::drive_force(std::size_t j) {
+  const Joint& joint = robot_.joints[j];
+  const bool is_angle = joint.type != JointType::prismatic;
+  std::string text;
+  const auto add = [&](const Number& number, const char* unit, const std::string& rest) {
+    if (number.is_zero()) return;
+    const bool is_negative = number.value < 0;
+    const std::string size = to_text(is_negative ? -number : number);
+    const char* sign = text.empty() ? (is_negative ? "-" : "") : is_negative ? " - " : " + ";
+    const bool is_one = size == "1" && unit[0] == '\0' && !rest.empty();
+    text += fmt::format("{}{}{}{}", sign, is_one ? "" : size, unit, is_one || rest.empty() ? rest : "*" + rest);
+  };
+  for (const Drive& drive : joint.drives) {
+    const std::string input = names_.claim("u_" + drive.name, "_input");
+    const bool is_position = drive.input == Drive::Input::position, is_force = drive.input == Drive::Input::force;
+    const char* const unit = is_force      ? (is_angle ? "N*m" : "N")
+                             : is_position ? (is_angle ? "rad" : "m")
+                                           : (is_angle ? "rad/s" : "m/s");
+    inputs_ += fmt::format("{} = {{ unit = \"{}\" }}  # {}\n", input, unit, drive.comment);
+    result_.inputs.push_back(input);
+    const char *const per_place = is_angle ? "[N*m]" : "[N/m]", *const per_rate = is_angle ? "[N*m*s]" : "[N*s/m]";
+    add(drive.gear * drive.gain, is_force ? "" : is_position ? per_place : per_rate, input);
+    add(drive.gear * drive.offset, is_angle ? "[N*m]" : "[N]", "");
+    add(drive.gear * drive.gear * drive.stiffness, per_place, joint_names_[j]);
+    add(drive.gear * drive.gear * drive.damping, per_rate, joint_names_[j] + "_dot");
+  }
+  return text.empty() ? "0" : text;
+}
+
+void ModelWriter::write_springs() {
+  std::string entries;
+  for (const std::size_t j : moving_joints()) {
+    const Joint& joint = robot_.joints[j];
+    if (joint.stiffness.is_zero()) continue;
+    const bool is_angle = joint.type != JointType::prismatic;
+    const std::string& q = joint_names_[j];
+    const Number& rest = joint.spring_reference;
+    const std::string stretch = rest.is_zero()
+                                    ? q
+                                    : fmt::format("({} {} {}[{}])", q, rest.value < 0 ? '+' : '-',
+                                                  to_text(rest.value < 0 ? -rest : rest), is_angle ? "rad" : "m");
+    entries +=
+        fmt::format("{} = \"-{}*{}\"\n", q, factor(joint.stiffness, is_angle ? "N*m" : "N/m", "k_" + q), stretch);
+  }
+  if (!entries.empty())
+    body_ += fmt::format("\n# Springs of joints.\n[[force]]\nname = \"{}\"\n[force.generalized]\n{}",
+                         names_.claim("springs", "_force"), entries);
 }
 
 void ModelWriter::write_dissipation() {
@@ -72,9 +125,49 @@ void ModelWriter::write_dissipation() {
   body_ += friction;
 }
 
+/// Whether some joint lets a mass rise or fall, by the directions of the joints at zero.
+bool ModelWriter::does_gravity_work() const {
+  if (options_.floating) return true;
+  constexpr long double parallel = 1e-15L;
+  const Vector& g = robot_.gravity;
+  const long double size = std::hypot(g[0].value, g[1].value, g[2].value);
+  std::vector<Matrix> axes{identity()};
+  for (std::size_t i = 1; i < assembly_.parts.size(); ++i) {
+    const Part& part = assembly_.parts[i];
+    const Joint& joint = robot_.joints[part.joint];
+    axes.push_back(axes[part.parent] * part.attachment.R);
+    if (joint.type == JointType::floating || joint.type == JointType::ball) return true;
+    const Vector n = axes.back() * joint.axis;
+    const long double along = (n[0].value * g[0].value + n[1].value * g[1].value + n[2].value * g[2].value) / size;
+    const bool is_along = std::fabs(std::fabs(along) - 1) <= parallel, is_across = std::fabs(along) <= parallel;
+    if (joint.type == JointType::prismatic ? !is_across : !is_along) return true;
+  }
+  return false;
+}
+
+bool ModelWriter::has_gravity_along_z() const {
+  return robot_.gravity[0].is_zero() && robot_.gravity[1].is_zero() && robot_.gravity[2].value < 0;
+}
+
+std::string ModelWriter::gravity_text() const {
+  std::string text;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (!robot_.gravity[k].is_zero())
+      text += fmt::format("{}{}[m/s^2]*E{}", text.empty() || robot_.gravity[k].value < 0 ? "" : "+",
+                          to_text(robot_.gravity[k]), k + 1);
+  return text;
+}
+
 void ModelWriter::write_forces() {
-  body_ += "\n[[force]]\ngravity = \"-g*E3\"\n";
+  if (!gravity_works_)
+    findings_.add("gravity", "joints turn about the vertical and slide along the horizontal, so that it does no work",
+                  robot_.where);
+  else if (has_gravity_along_z())
+    body_ += "\n[[force]]\ngravity = \"-g*E3\"\n";
+  else if (!is_zero(robot_.gravity))
+    body_ += fmt::format("\n[[force]]\ngravity = \"{}\"\n", gravity_text());
   write_drives();
+  write_springs();
   write_dissipation();
 }
 
@@ -152,18 +245,26 @@ std::string ModelWriter::header() const {
   if (findings_.unlisted() > 0) text += fmt::format("# {} further places are not listed.\n", findings_.unlisted());
   for (const Renaming& renaming : result_.renamings)
     text += fmt::format("# The {} {} is {} here.\n", renaming.kind, quoted(renaming.from), renaming.to);
-  text += fmt::format("format = 1\ntitle = {}\n\n[parameters]\ng = \"9.81 m/s^2\"\n{}",
-                      toml_text(robot_.name.substr(0, 200)), parameters_);
+  text += fmt::format("format = 1\ntitle = {}\n", toml_text(robot_.name.substr(0, 200)));
+  const std::string g = gravity_works_ && has_gravity_along_z()
+                            ? fmt::format("g = \"{} m/s^2\"\n", to_text(-robot_.gravity[2]))
+                            : std::string();
+  if (!g.empty() || !parameters_.empty()) text += "\n[parameters]\n" + g + parameters_;
   if (!inputs_.empty()) text += "\n[inputs]\n" + inputs_;
   text += "\n[coordinates]\n";
-  for (const CoordinateText& coordinate : coordinates_)
-    text += fmt::format("{} = {}{}\n", coordinate.name, coordinate.unit.empty() ? "{}" : "\"" + coordinate.unit + "\"",
+  for (const CoordinateText& coordinate : coordinates_) {
+    std::string entry = coordinate.unit.empty() ? "{}" : "\"" + coordinate.unit + "\"";
+    if (!coordinate.armature.empty())
+      entry = fmt::format("{{ unit = \"{}\", armature = \"{}\" }}", coordinate.unit, coordinate.armature);
+    text += fmt::format("{} = {}{}\n", coordinate.name, entry,
                         coordinate.comment.empty() ? "" : "  # " + coordinate.comment);
+  }
   return text;
 }
 
 ImportedModel ModelWriter::write() {
   name_coordinates();
+  gravity_works_ = is_zero(robot_.gravity) || does_gravity_work();
   if (coordinates_.empty())
     fail(robot_.where, "nothing moves: every joint is fixed", "give the robot a joint that moves, or use --floating");
   write_parts();

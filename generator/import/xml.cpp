@@ -68,7 +68,7 @@ class Builder {
     const SourceLocation where = place(node.name(), node.offset_debug());
     if (depth > max_xml_depth)
       fail(where, fmt::format("elements are nested more than {} deep", max_xml_depth),
-           "check that this is a robot file; a link or joint needs six levels");
+           "check that this is a robot file; divide a chain of so many bodies");
     if (++elements_ > max_xml_elements)
       fail(where, fmt::format("the file has more than {} elements", max_xml_elements), "divide the robot into parts");
     Element result{node.name(), node.text().get(), where, {}, {}};
@@ -166,19 +166,26 @@ const Attribute& require_attribute(const Element& element, std::string_view name
 
 Number number_of(const Attribute& attribute) { return parse_number_of(attribute, trimmed(attribute.value)); }
 
-Vector vector_of(const Attribute& attribute) {
-  Vector result;
+std::vector<Number> numbers_of(const Attribute& attribute, std::size_t least, std::size_t most) {
+  std::vector<Number> result;
   std::string_view rest = trimmed(attribute.value);
   std::size_t count = 0;
   for (; !rest.empty(); ++count) {
     const std::string_view word = rest.substr(0, rest.find_first_of(" \t\n\r"));
-    if (count < 3) result[count] = parse_number_of(attribute, word);
+    if (count < most) result.push_back(parse_number_of(attribute, word));
     rest = trimmed(rest.substr(word.size()));
   }
-  if (count != 3)
-    fail(attribute.where, fmt::format("'{}' has {} numbers", attribute.name, count),
-         fmt::format("write {}=\"0 0 1\": three numbers with blanks between them", attribute.name));
-  return result;
+  if (count >= least && count <= most) return result;
+  const std::string needed = least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
+  fail(attribute.where, fmt::format("'{}' has {} numbers", attribute.name, count),
+       most == 3 && least == 3
+           ? fmt::format("write {}=\"0 0 1\": three numbers with blanks between them", attribute.name)
+           : fmt::format("write {} numbers with blanks between them", needed));
+}
+
+Vector vector_of(const Attribute& attribute) {
+  const std::vector<Number> numbers = numbers_of(attribute, 3, 3);
+  return {numbers[0], numbers[1], numbers[2]};
 }
 
 const Element* only_child(const Element& element, std::string_view name) {

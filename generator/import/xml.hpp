@@ -15,7 +15,7 @@ namespace eomgen::import {
 
 /// Largest file in bytes, deepest nesting of elements, most elements.
 inline constexpr std::size_t max_xml_bytes = std::size_t{1} << 22;
-inline constexpr std::size_t max_xml_depth = 64;
+inline constexpr std::size_t max_xml_depth = 200;
 inline constexpr std::size_t max_xml_elements = 100000;
 
 struct Attribute {
@@ -42,6 +42,8 @@ Element parse_xml(const std::string& file, const std::string& bytes);
 const Attribute& require_attribute(const Element& element, std::string_view name);
 /// The number in an attribute; throws Error if it is none.
 Number number_of(const Attribute& attribute);
+/// The numbers in an attribute; throws Error if there are fewer or more.
+std::vector<Number> numbers_of(const Attribute& attribute, std::size_t least, std::size_t most);
 /// An attribute of three numbers; throws Error otherwise.
 Vector vector_of(const Attribute& attribute);
 /// The only child of that name; nullptr without one. Throws Error if there are several.

@@ -16,10 +16,11 @@ namespace {
 constexpr const char* drawing_form =
     "write { sphere = \"R\" }, { box = [\"a\", \"b\", \"c\"] }, { cylinder = [\"R\", \"L\"] }, { disk = \"R\" }, { rod "
     "= \"L\" }, { arrow = [\"x\", \"y\", \"z\"] } or { mesh = [[\"x\", \"y\", \"z\"], ..] }";
-constexpr const char* points_form = "give its points as [[\"x\", \"y\", \"z\"], ..], from 4 to 60 of them";
+constexpr const char* points_form =
+    "give its points as [[\"x\", \"y\", \"z\"], ..], from 4 to 60 of them, or to 200 with faces";
 constexpr const char* faces_form =
     "give each face as the numbers of its points in their order, [1, 2, 3], counted from 1";
-constexpr std::size_t fewest_points = 4, most_points = 60, most_faces = 200;
+constexpr std::size_t fewest_points = 4, most_points = 60, most_points_with_faces = 200, most_faces = 400;
 
 struct DrawnShape {
   std::string_view key;
@@ -126,7 +127,7 @@ void DrawReader::read_mesh(ShapeSpec& drawn, const Value& points, const Value* f
   drawn.kind = "mesh";
   require_kind(Value::Kind::array, points, fmt::format("the mesh in {}", what), points_form);
   const std::size_t count = points.items.size();
-  if (count < fewest_points || count > most_points)
+  if (count < fewest_points || count > (faces == nullptr ? most_points : most_points_with_faces))
     source_.fail(points.span, fmt::format("{} has {} points", what, count), points_form);
   for (const Value& point : points.items) {
     const std::vector<NodeId> lengths = drawn_lengths(point, 3, what, false);

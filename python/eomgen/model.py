@@ -101,7 +101,7 @@ class Model:
         exact_angles: bool = False,
         name: Optional[str] = None,
     ) -> "Model":
-        """Reads a robot file (URDF) as a model: ``eomgen import``. ``text`` is the model file.
+        """Reads a robot file (URDF or MJCF) as a model: ``eomgen import``. ``text`` is the model file.
 
         ``floating``: the root link moves. ``attitude``: of free links, "euler" or "euler_parameters". ``friction``:
         "smooth", "dry" or "none". ``actuators``: joints with an input, "transmissions", "all" or "none". ``stops``:
@@ -117,6 +117,11 @@ class Model:
             warnings.warn(text, ModelWarning, stacklevel=2)
         base = os.path.splitext(os.path.basename(file))[0]
         return cls(found["text"], name or base)
+
+    @classmethod
+    def from_mjcf(cls, path: "str | os.PathLike[str]", **options: Any) -> "Model":
+        """Reads a robot file of MuJoCo (MJCF). Options are those of from_urdf; the file states what is free."""
+        return cls.from_urdf(path, **options)
 
     @classmethod
     def from_text(cls, text: str, name: str = "model", folder: "str | os.PathLike[str]" = "") -> "Model":

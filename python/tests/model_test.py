@@ -203,6 +203,8 @@ class ModelTest(unittest.TestCase):
 format = 1
 [inputs]
 F = {}
+[coordinates]
+x = {}
 [[particle]]
 name = "P"
 mass = 1

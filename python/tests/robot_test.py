@@ -55,6 +55,19 @@ class RobotTest(unittest.TestCase):
         np.testing.assert_allclose(f.rhs(0.0, [q, 0.2], [u]), [0.2, expected], rtol=1e-12)
         self.assertEqual(pickle.loads(pickle.dumps(model)).text, model.text)
 
+    def test_an_mjcf_file_is_the_same_pendulum(self):
+        path = os.path.join(self.folder.name, "swing.xml")
+        with open(path, "w") as file:
+            file.write(
+                '<mujoco><worldbody><body name="arm"><joint name="hinge" axis="0 1 0"/><inertial pos="0 0 -0.4" '
+                'mass="1.5" diaginertia="0.02 0.03 0.01"/></body></worldbody><actuator><motor joint="hinge"/>'
+                "</actuator></mujoco>"
+            )
+        model = eomgen.Model.from_mjcf(path)
+        self.assertEqual((model.name, model.coordinates, model.inputs), ("swing", ["hinge"], ["u_hinge"]))
+        ours, urdf = model.compile(), self.model(actuators="all").compile()
+        np.testing.assert_allclose(ours.rhs(0.0, [0.7, 0.2], [0.3]), urdf.rhs(0.0, [0.7, 0.2], [0.3]), rtol=1e-14)
+
     def test_a_floating_robot_has_six_further_coordinates(self):
         self.assertEqual(len(self.model(floating=True).coordinates), 7)
 

@@ -43,6 +43,12 @@ Rotation by_rpy(const Triple& rpy) {
   return product(about({0, 0, 1}, rpy[2]), product(about({0, 1, 0}, rpy[1]), about({1, 0, 0}, rpy[0])));
 }
 
+Rotation tensor_of(const RobotJoint& joint) {
+  const auto& J = joint.tensor;
+  const Rotation A = by_rpy(joint.inertial_rpy), tensor{{{J[0], J[1], J[2]}, {J[1], J[3], J[4]}, {J[2], J[4], J[5]}}};
+  return product(A, product(tensor, transposed(A)));
+}
+
 /// A joint in motion: all vectors along the axes of the world.
 struct Motion {
   Rotation R{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -81,10 +87,7 @@ std::vector<double> inverse_dynamics(const std::vector<RobotJoint>& robot, const
       m.wdot = sum(sum(parent.wdot, cross(parent.w, m.n), qdot[own]), m.n, qddot[own]);
     }
     const Triple c = times(m.R, joint.centre);
-    const Rotation A = product(m.R, by_rpy(joint.inertial_rpy));
-    const auto& J = joint.tensor;
-    const Rotation tensor{{{J[0], J[1], J[2]}, {J[1], J[3], J[4]}, {J[2], J[4], J[5]}}};
-    const Rotation I = product(A, product(tensor, transposed(A)));
+    const Rotation I = product(m.R, product(tensor_of(joint), transposed(m.R)));
     const Triple a = sum(sum(m.vdot, cross(m.wdot, c)), cross(m.w, cross(m.w, c)));
     force[i] = {joint.mass * a[0], joint.mass * a[1], joint.mass * a[2]};
     moment[i] = sum(sum(times(I, m.wdot), cross(m.w, times(I, m.w))), cross(sum(m.p, c), force[i]));
@@ -119,7 +122,35 @@ std::string link_text(const std::string& name, const RobotJoint& link) {
       name, text_of(link.centre), text_of(link.inertial_rpy), link.mass, J[0], J[1], J[2], J[3], J[4], J[5]);
 }
 
+/// The body of a link and, inside of it, those of links that hang on it.
+std::string mjcf_body(const std::vector<RobotJoint>& robot, int index, const RobotJoint& link,
+                      const std::string& joint) {
+  std::string text =
+      fmt::format("<body name=\"{}\" pos=\"{}\" euler=\"{}\">\n{}", index < 0 ? "base" : fmt::format("l{}", index),
+                  text_of(link.xyz), text_of(link.rpy), joint);
+  if (link.mass != 0) {
+    const Rotation J = tensor_of(link);
+    text += fmt::format("<inertial pos=\"{}\" mass=\"{}\" fullinertia=\"{} {} {} {} {} {}\"/>\n", text_of(link.centre),
+                        link.mass, J[0][0], J[1][1], J[2][2], J[0][1], J[0][2], J[1][2]);
+  }
+  for (std::size_t i = 0; i < robot.size(); ++i) {
+    const RobotJoint& child = robot[i];
+    if (child.parent != index) continue;
+    std::string own;
+    if (child.moves())
+      own = fmt::format("<joint name=\"j{}\" type=\"{}\" axis=\"{}\" damping=\"{}\"/>\n", i,
+                        child.type == "prismatic" ? "slide" : "hinge", text_of(child.axis), child.damping);
+    text += mjcf_body(robot, static_cast<int>(i), child, own);
+  }
+  return text + "</body>\n";
+}
+
 }  // namespace
+
+std::string mjcf_of(const std::vector<RobotJoint>& robot, const RobotJoint& base, bool free) {
+  return "<mujoco model=\"test\">\n<compiler angle=\"radian\" eulerseq=\"XYZ\"/>\n<worldbody>\n" +
+         mjcf_body(robot, -1, base, free ? "<freejoint name=\"base\"/>\n" : "") + "</worldbody>\n</mujoco>\n";
+}
 
 std::vector<std::vector<double>> equations_of(const std::vector<RobotJoint>& robot, const std::vector<double>& q,
                                               const std::vector<double>& qdot, double g) {

@@ -34,5 +34,7 @@ std::vector<double> solve(std::vector<std::vector<double>> equations);
 
 /// The same robot as a URDF file: joints j0, j1, .., links base, l0, l1, ...
 std::string urdf_of(const std::vector<RobotJoint>& robot, const RobotJoint& base);
+/// The same as an MJCF file. `free`: the base has a free joint.
+std::string mjcf_of(const std::vector<RobotJoint>& robot, const RobotJoint& base, bool free = false);
 
 }  // namespace eomgen::test

@@ -34,7 +34,8 @@ constexpr const char* inertias_are =
 constexpr const char* shapes_are =
     "write { sphere = \"R\" }, { box = [\"a\", \"b\", \"c\"] }, { cylinder = [\"R\", \"L\"] }, { disk = \"R\" }, { rod "
     "= \"L\" }, { arrow = [\"x\", \"y\", \"z\"] } or { mesh = [[\"x\", \"y\", \"z\"], ..] }";
-constexpr const char* points_are = "give its points as [[\"x\", \"y\", \"z\"], ..], from 4 to 60 of them";
+constexpr const char* points_are =
+    "give its points as [[\"x\", \"y\", \"z\"], ..], from 4 to 60 of them, or to 200 with faces";
 constexpr const char* faces_are =
     "give each face as the numbers of its points in their order, [1, 2, 3], counted from 1";
 const std::string angles = "{ euler = \"313\", angles = [\"phi\", \"theta\", \"psi\"] }";

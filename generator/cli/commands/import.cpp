@@ -86,7 +86,7 @@ int execute(const Options& options, const CommonOptions& common) {
 
 Execute declare_import(Arguments& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("FILE", options->file, "a robot file: URDF").required();
+  app.add_option("FILE", options->file, "a robot file: URDF or MJCF").required();
   app.add_output_path("-o,--out", options->out, "the model, F.toml; - or without it standard output");
   app.add_flag("--floating", options->floating, "the root link moves freely; without it, it is fixed to the ground");
   app.add_option("--attitude", options->attitude, "coordinates of free rotations: euler (3-2-1) or euler_parameters")

@@ -25,12 +25,12 @@ constexpr std::uint32_t magic = 0x46546C67, version = 2, json_chunk = 0x4E4F534A
 
 static_assert(std::endian::native == std::endian::little, "glTF stores little-endian numbers");
 
-struct Colour {
+struct Material {
   const char* name;
   double red, green, blue;
 };
 /// Per AnimatedKind.
-constexpr std::array<Colour, analysis::animated_kinds> colours{{{"body", 0.10, 0.28, 0.55},
+constexpr std::array<Material, analysis::animated_kinds> materials{{{"body", 0.10, 0.28, 0.55},
                                                                 {"particle", 0.70, 0.16, 0.10},
                                                                 {"point", 0.35, 0.35, 0.35},
                                                                 {"rod", 0.45, 0.45, 0.48},
@@ -38,7 +38,7 @@ constexpr std::array<Colour, analysis::animated_kinds> colours{{{"body", 0.10, 0
                                                                 {"damper", 0.55, 0.40, 0.10}}};
 
 template <class T>
-void append(std::string& bytes, T value) {
+void append_bytes(std::string& bytes, T value) {
   const auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
   bytes.append(raw.data(), raw.size());
 }
@@ -46,7 +46,7 @@ void append(std::string& bytes, T value) {
 class Document {
  public:
   Document(const Animation& animation, const std::string& title) {
-    for (const Colour& c : colours) {
+    for (const Material& c : materials) {
       materials_.push_back(
           {{"name", c.name},
            {"doubleSided", true},
@@ -76,14 +76,14 @@ class Document {
     std::string text = json_.dump();
     text.resize((text.size() + 3) / 4 * 4, ' ');
     std::string result;
-    append(result, magic);
-    append(result, version);
-    append(result, static_cast<std::uint32_t>(12 + 8 + text.size() + 8 + bytes_.size()));
-    append(result, static_cast<std::uint32_t>(text.size()));
-    append(result, json_chunk);
+    append_bytes(result, magic);
+    append_bytes(result, version);
+    append_bytes(result, static_cast<std::uint32_t>(12 + 8 + text.size() + 8 + bytes_.size()));
+    append_bytes(result, static_cast<std::uint32_t>(text.size()));
+    append_bytes(result, json_chunk);
     result += text;
-    append(result, static_cast<std::uint32_t>(bytes_.size()));
-    append(result, binary_chunk);
+    append_bytes(result, static_cast<std::uint32_t>(bytes_.size()));
+    append_bytes(result, binary_chunk);
     return result + bytes_;
   }
 
@@ -111,7 +111,7 @@ class Document {
   /// An accessor of tuples of `width` floats.
   std::size_t floats(const std::vector<float>& values, std::size_t width, bool bounds, int target) {
     const std::size_t begin = bytes_.size();
-    for (const float x : values) append(bytes_, x);
+    for (const float x : values) append_bytes(bytes_, x);
     static constexpr std::array<const char*, 5> types{"", "SCALAR", "", "VEC3", "VEC4"};
     Json entry{{"bufferView", view(begin, target)},
                {"componentType", float_type},
@@ -142,7 +142,7 @@ class Document {
   std::size_t indices(const std::vector<std::array<std::uint32_t, 3>>& triangles) {
     const std::size_t begin = bytes_.size();
     for (const auto& triangle : triangles) {
-      for (const std::uint32_t i : triangle) append(bytes_, i);
+      for (const std::uint32_t i : triangle) append_bytes(bytes_, i);
     }
     accessors_.push_back({{"bufferView", view(begin, index_buffer)},
                           {"componentType", unsigned_type},
