@@ -215,7 +215,14 @@ class Solver {
     const ComplementaritySolution solution = solve_complementarity(M, q, scaled);
     FrictionForces result = complete(B * solution.z.head(n));
     result.found = solution.found;
-    return result;
+    if (!solution.found) return result;
+    // The share leaves velocities of its own size, which would count as slip. A step of the proximal point method from
+    // this solution removes them.
+    q.head(n) = B.transpose() * (q_ - softness * G_.diagonal().cwiseAbs().cwiseProduct(B * solution.z.head(n)));
+    const ComplementaritySolution corrected = solve_complementarity(M, q, scaled);
+    if (!corrected.found) return result;
+    FrictionForces better = complete(B * corrected.z.head(n));
+    return complementarity_residual(p_, better) < complementarity_residual(p_, result) ? better : result;
   }
 
   /// Forces and velocities of all rows from the forces of the free ones.
