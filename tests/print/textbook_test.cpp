@@ -256,3 +256,37 @@ TEST_CASE("textbooks: a rolling disk by its shape has no quotient of |sin| and n
   CHECK(contains(lines, "z_dot - R cos(theta) sign(sin(theta)) theta_dot = 0"));
   for (const std::string& line : lines) CHECK(line.find("/abs") == std::string::npos);
 }
+
+TEST_CASE("textbooks: a root whose value a constraint gives is written with that value") {
+  const auto lines_of = [](const std::string& constraint, const std::vector<std::string>& keys) {
+    const mechanics::Mechanics m = mechanics::build_mechanics(
+        read("m = 1\nL = { value = 1, positive = true }\nk = 1\ng = 9.81\n",
+             "[[particle]]\nname = \"P\"\nmass = \"m\"\n"
+             "position = { cartesian = [\"x\", \"y\", \"z\"] }\n" +
+                 weight_in_space +
+                 "[[force]]\nname = \"spring\"\nspring = { stiffness = \"k\", length = \"L/2\","
+                 " between = [\"origin\", \"P\"] }\n"
+                 "[[constraint]]\nname = \"rod\"\nholonomic = \"" +
+                 constraint + "\"\n"));
+    std::vector<std::string> lines;
+    for (const auto& item : print::render(m, reading::derive_display_form(m, system::Approach::one), keys))
+      lines.push_back(item.text);
+    return lines;
+  };
+  for (const char* constraint : {"sqrt(x^2 + y^2 + z^2) - L", "2*L - 2*sqrt(z^2 + x^2 + y^2)"}) {
+    const std::vector<std::string> lines = lines_of(constraint, {"equations", "constraints", "reactions"});
+    CAPTURE(in_lines(lines));
+    std::size_t roots = 0;
+    for (const std::string& line : lines) roots += line.find("sqrt") != std::string::npos ? 1 : 0;
+    CHECK(roots == 1);  // the constraint itself
+  }
+  const std::vector<std::string> lines = lines_of("sqrt(x^2 + y^2 + z^2) - L", {"equations"});
+  CAPTURE(in_lines(lines));
+  CHECK(contains(lines, "m x_ddot + 1/2 k x = lambda x/L"));
+  // The length of the spring follows from the square as well; another length does not.
+  CHECK(contains(lines_of("x^2 + y^2 + z^2 - L^2", {"equations"}), "m x_ddot + 1/2 k x = 2 lambda x"));
+  bool has_root = false;
+  for (const std::string& line : lines_of("x^2 + y^2 - L^2", {"equations"}))
+    has_root = has_root || line.find("sqrt") != std::string::npos;
+  CHECK(has_root);
+}

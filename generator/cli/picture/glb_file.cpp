@@ -31,11 +31,11 @@ struct Material {
 };
 /// Per AnimatedKind.
 constexpr std::array<Material, analysis::animated_kinds> materials{{{"body", 0.10, 0.28, 0.55},
-                                                                {"particle", 0.70, 0.16, 0.10},
-                                                                {"point", 0.35, 0.35, 0.35},
-                                                                {"rod", 0.45, 0.45, 0.48},
-                                                                {"spring", 0.12, 0.45, 0.20},
-                                                                {"damper", 0.55, 0.40, 0.10}}};
+                                                                    {"particle", 0.70, 0.16, 0.10},
+                                                                    {"point", 0.35, 0.35, 0.35},
+                                                                    {"rod", 0.45, 0.45, 0.48},
+                                                                    {"spring", 0.12, 0.45, 0.20},
+                                                                    {"damper", 0.55, 0.40, 0.10}}};
 
 template <class T>
 void append_bytes(std::string& bytes, T value) {
