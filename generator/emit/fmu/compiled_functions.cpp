@@ -4,6 +4,9 @@
 #include <set>
 #include <sstream>
 
+// Its hash tells compiler caches that the object has changed.
+#include EOMGEN_FMI_HASH
+
 // CMake defines the two files, and compiles this one again when they change.
 __asm__(
     ".section .rodata\n"
