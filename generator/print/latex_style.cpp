@@ -100,9 +100,12 @@ class LatexStyle final : public Style {
   Piece product(const std::vector<Piece>& factors) const override {
     std::string text;
     bool after_call = false;  // a thin space separates the next factor from the argument
+    bool after_word = false;  // and two names of several letters, which would read as one
     for (const Piece& factor : factors) {
-      if (!text.empty()) text += after_call ? "\\, " : " ";
+      const bool is_word = factor.text.substr(0, factor.text.find('_')).find("\\mathrm{") != std::string::npos;
+      if (!text.empty()) text += after_call || (after_word && is_word) ? "\\, " : " ";
       text += factor.text;
+      after_word = is_word;
       after_call =
           factor.text.starts_with("\\sin") || factor.text.starts_with("\\cos") || factor.text.starts_with("\\tan");
     }
