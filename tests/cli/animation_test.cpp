@@ -122,7 +122,7 @@ spring = { between = ["tip", "bob"], stiffness = "k", length = "L/4" }
 [scene.default]
 t = [1, 4]
 initial = { theta = 1, x = 0.3, z = -1.2 }
-outputs = ["bob.position", "bar.position"]
+outputs = ["bob.position1", "bob.position2", "bob.position3", "bar.position1", "bar.position2", "bar.position3"]
 )toml";
 
 }  // namespace
@@ -215,7 +215,7 @@ TEST_CASE("animation: triangles have their outside to the left, and bounds hold"
 TEST_CASE("animation: a model without positions, another ending, and a folder that does not exist are refused") {
   const Folder folder;
   folder.write("o.toml", oscillator_text());
-  CHECK(contains(expect(2, folder, {"run", "o.toml", "--animation", "a.gltf"}).err, ".glb"));
+  CHECK(contains(expect(2, folder, {"run", "o.toml", "--animation", "a.svg"}).err, ".glb"));
   CHECK(contains(expect(2, folder, {"run", "o.toml", "--animation", "none/a.glb"}).err, "none"));
   CHECK_FALSE(folder.has("a.glb"));
   folder.write("energies.toml",

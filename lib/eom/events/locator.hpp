@@ -31,14 +31,12 @@ namespace eom {
 /// Direction of the value as a function of time, independent of the direction of integration.
 enum class Direction { any, up, down };
 
-/// Treatment of the crossings of an event function.
 enum class Watch {
   off,
   passing,   // reported, and the integration continues unchanged
   breaking,  // the step ends at the crossing, and the handler decides how to continue
 };
 
-/// Which crossings of an event function are located, and how they are treated.
 struct EventFunction {
   Direction direction = Direction::any;
   Watch watch = Watch::breaking;
@@ -47,7 +45,6 @@ struct EventFunction {
   bool resets = false;  // a handler may turn it back at its crossing: it then has to return to the side it came from
 };
 
-/// A zero of an event function on the motion.
 struct Crossing {
   std::size_t function = 0;
   double t = 0;
@@ -56,7 +53,6 @@ struct Crossing {
                                                            // infinite: not known
 };
 
-/// Finds the crossings of the steps of one run.
 class EventLocator {
  public:
   /// n: components of the state.
@@ -71,7 +67,6 @@ class EventLocator {
         samples_(places.size() * functions_.size()),
         x_(n) {}
 
-  /// The event functions, in the order of the values of g.
   std::span<EventFunction> functions() { return functions_; }
   std::span<const EventFunction> functions() const { return functions_; }
   /// Current side of a function: -1, 0 (unknown) or 1.
