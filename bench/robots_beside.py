@@ -142,6 +142,7 @@ def row(program, path, folder, mujoco):
     operations = sum(json.loads(emitted.stdout)["operations"].values())
     name = subprocess.run([program, "emit", model, "--print-name"], check=True, capture_output=True, text=True).stdout.strip()
     coordinates = imported["coordinates"]
+    has_followers = imported["constraints"] > 0
     n = len(coordinates)
     own = compiled(EOMGEN.replace("NAME", name), folder, name + "_calls", folder / path.stem / (name + ".c"), "-lm")
     generator = random.Random(3)
@@ -149,6 +150,8 @@ def row(program, path, folder, mujoco):
     counts = [str(STATES), str(CALLS), str(n)]
     accelerations, ns = run_program([own, *counts], states)
     cells = [path.stem, n, operations, f"{ns:.0f}"]
+    if has_followers:
+        return "| " + " | ".join(str(cell) for cell in [*cells, "", "joints follow others"]) + " |"
     try:
         theirs, other_ns = run_program([mujoco, *counts, for_mujoco(path, folder), *joints_of(path, coordinates)], states) \
             if mujoco else (None, None)
