@@ -74,7 +74,7 @@ Extent extent_of(const MjcfElement& at, const MjcfSettings& settings, const std:
     }
     const long double length = std::hypot(d[0], d[1], d[2]);
     if (length == 0) fail(ends->where, "both ends of 'fromto' are equal", "write two points");
-    if (count == 3 && sizes.size() == 1) extent.size[1] = extent.size[0];
+    if (count == 3) extent.size[1] = extent.size[0];  // boxes and ellipsoids are as thick as wide
     extent.size[count - 1] = Number(length / 2);
     extent.pose.R = from_z_axis(d);
     extent.pose.rpy.reset();

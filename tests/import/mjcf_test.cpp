@@ -115,6 +115,8 @@ TEST_CASE("MJCF: masses and moments of geoms are those of homogeneous solids") {
       {"type=\"capsule\" size=\"0.1 0.3\"", ball + tube, (ball * of_ball + tube * of_tube) / (ball + tube)},
       {"type=\"capsule\" size=\"0.1\" fromto=\"-0.3 0 -1 0.3 0 -1\"", ball + tube,
        (ball * of_ball + tube * of_tube) / (ball + tube)},
+      // Between two points a box is square: MuJoCo ignores its second size.
+      {"type=\"box\" size=\"0.1 0.7\" fromto=\"0 0.3 -1 0 -0.3 -1\"", 8 * 0.003, (0.01 + 0.01) / 3},
       {"type=\"capsule\" size=\"0.1\" fromto=\"0 0.3 -1 0 -0.3 -1\"", ball + tube,
        (ball * 0.4 + tube * 0.5) * r * r / (ball + tube)}};
   const double q = 0.4, L = 1;

@@ -20,6 +20,7 @@ TEST_CASE("signal: an expression of t and parameters has the value of its formul
 
 TEST_CASE("signal: a table keeps its value up to the next time, and at a jump the side selects the value") {
   const run::Signal signal({0, 1, 2}, {3, 5, 8}, false);
+  CHECK_FALSE(signal.is_varying());
   CHECK(signal(-1, -1) == 3);
   CHECK(signal(0.5, 0.5) == 3);
   CHECK(signal(1, 0.5) == 3);
@@ -27,12 +28,12 @@ TEST_CASE("signal: a table keeps its value up to the next time, and at a jump th
   CHECK(signal(9, 9) == 8);
 }
 
-TEST_CASE("signal: a linear table runs along straight lines, and is constant before and after its times") {
-  const run::Signal signal({0, 1, 3}, {3, 5, 1}, true);
+TEST_CASE("signal: a linear table runs along straight lines and is constant outside") {
+  const run::Signal signal({0, 1, 2}, {3, 5, 8}, true);
+  CHECK(signal.is_varying());
   CHECK(signal(-1, -1) == 3);
   CHECK(signal(0.5, 0.5) == 4);
   CHECK(signal(1, 0.5) == 5);
-  CHECK(signal(1, 1.5) == 5);
-  CHECK(signal(2, 2) == 3);
-  CHECK(signal(9, 9) == 1);
+  CHECK(signal(1.5, 1.5) == 6.5);
+  CHECK(signal(9, 9) == 8);
 }
