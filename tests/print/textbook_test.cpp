@@ -292,9 +292,8 @@ TEST_CASE("textbooks: a root whose value a constraint gives is written with that
 }
 
 TEST_CASE("textbooks: names of several letters stay apart in a product") {
-  const mechanics::Mechanics m = mechanics::build_mechanics(
-      read("Ja = 1\nspin = 2\nm = 1\n", coordinates({"x"}) + particle("P", "m", "\"x\", 0, 0") +
-                                            potential("Ja*spin*m*x")));
+  const mechanics::Mechanics m = mechanics::build_mechanics(read(
+      "Ja = 1\nspin = 2\nm = 1\n", coordinates({"x"}) + particle("P", "m", "\"x\", 0, 0") + potential("Ja*spin*m*x")));
   std::string latex;
   for (const auto& item : print::render(m, reading::derive_display_form(m, system::Approach::one), {"energies"}))
     latex += item.latex + "\n";
