@@ -4,7 +4,7 @@
 #include <set>
 #include <sstream>
 
-// Its hash tells compiler caches that the object has changed.
+// Its hash: compiler caches see this header and not the object, and compile again when it changes.
 #include EOMGEN_FMI_HASH
 
 // CMake defines the two files, and compiles this one again when they change.
