@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/animation_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "analysis/drawing/animation.hpp"
 #include "cli/picture/glb_file.hpp"
@@ -25,7 +28,7 @@ std::vector<std::string> AnimationFile::prepare(pipeline::DerivedModel& derived)
 void AnimationFile::begin(const std::vector<std::string>& names, double expected_rows) {
   for (const std::string& name : drawing_->outputs())
     index_.push_back(static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin()));
-  stride_ = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(expected_rows / most_keyframes));
+  stride_ = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::ceil(expected_rows / most_keyframes)));
 }
 
 void AnimationFile::row(double t, std::span<const double> values) {
@@ -41,6 +44,12 @@ std::uint64_t AnimationFile::write(const pipeline::Simulation& simulation, const
   const analysis::Animation motion =
       analysis::animation(drawing_->parts(), analysis::sizes_of(*drawing_, *m.dag, parameters), t_, rows_,
                           analysis::gravity_direction(m, parameters));
+  if (motion.nodes.empty())
+    throw Error("run", {}, "no part has a finite position at every keyframe, so that there is nothing to animate",
+                "end the run before the motion diverges: --t-end", ErrorKind::numerical);
+  if (!motion.left_out.empty())
+    print_message(fmt::format("note: not in the animation, without a finite position at every keyframe: {}\n",
+                              fmt::join(motion.left_out, ", ")));
   return write_text(path_, encode_glb(motion, title));
 }
 

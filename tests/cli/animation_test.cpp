@@ -2,6 +2,7 @@
 // The file of `run --animation`, read by the rules of glTF 2.0 and compared with the table of the same run.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -223,4 +224,30 @@ TEST_CASE("animation: a model without positions, another ending, and a folder th
                "potential = \"m/2*x^2\"\n[scene.default]\nt = [0, 1]\ninitial = { x = 1 }\n");
   CHECK(contains(expect(2, folder, {"run", "energies.toml", "--animation", "a.glb"}).err, "nothing to animate"));
   CHECK_FALSE(folder.has("a.glb"));
+}
+
+TEST_CASE("animation: a part without a position in some row is left out and reported; keyframes are bounded") {
+  const Folder folder;
+  folder.write("turn.toml",
+               "format = 1\n[parameters]\nm = \"1 kg\"\nL = \"1 m\"\n[coordinates]\nth = \"rad\"\n"
+               "[[body]]\nname = \"B\"\nmass = \"m\"\ninertia = { principal = [\"m*L^2\", \"m*L^2\", \"m*L^2\"] }\n"
+               "position = [0, 0, 0]\nrotation = { axis = \"E3\", angle = \"th\" }\n"
+               "[[point]]\nname = \"Q\"\non = \"B\"\nat = [\"sqrt(0.5[m^2] - th*L^2)\", 0, 0]\n"
+               "[scene.default]\nt = [0, 1]\ninitial = { th_dot = 1 }\n");
+  const auto names = [&] {
+    std::vector<std::string> result;
+    const Gltf gltf(folder.read("a.glb"));
+    for (const Json& node : gltf.json["nodes"]) result.push_back(node["name"]);
+    return result;
+  };
+  CHECK(contains(expect(0, folder, {"run", "turn.toml", "--animation", "a.glb"}).err, "not in the animation"));
+  CHECK(names() == std::vector<std::string>{"B", "turn"});
+  CHECK_FALSE(
+      contains(expect(0, folder, {"run", "turn.toml", "--animation", "a.glb", "--t-end", "0.4"}).err, "not in the"));
+  const std::vector<std::string> all = names();
+  CHECK(std::find(all.begin(), all.end(), "Q") != all.end());
+  expect(0, folder, {"run", "turn.toml", "--animation", "a.glb", "--every", "0.00003", "--no-error-estimate"});
+  const std::size_t keyframes = Gltf(folder.read("a.glb")).channel("B", "rotation").first.size();
+  CHECK(keyframes <= 20000);
+  CHECK(keyframes > 10000);
 }

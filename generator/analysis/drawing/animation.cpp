@@ -116,21 +116,21 @@ TriangleMesh mesh_of(const std::vector<Solid>& solids, double extent) {
 
 class Animator {
  public:
-  Animator(const DrawnParts& parts, const std::vector<double>& sizes, const Rows& rows)
-      : parts_(parts), sizes_(sizes), rows_(rows) {
+  Animator(const DrawnParts& parts, const std::vector<double>& sizes, const Rows& rows) : parts_(parts), rows_(rows) {
     for (const std::vector<double>& row : rows) {
       for (const DrawnPlace& place : parts.places) {
         const Point at = vector(row, place.at);
         if (at.allFinite()) box_.extend(at);
       }
     }
+    if (!rows.empty()) solids_ = placed_solids(parts, sizes, rows.front());
     extent_ = box_.isEmpty() ? 1 : std::max(box_.diagonal().norm(), largest_solid());
     if (!(extent_ > 0)) extent_ = 1;
   }
 
   std::vector<AnimatedNode> run() {
     if (rows_.empty()) return {};
-    for (const PlacedSolids& placed : placed_solids(parts_, sizes_, rows_.front())) add_solids(placed);
+    for (const PlacedSolids& placed : solids_) add_solids(placed);
     for (std::size_t i = 0; i < parts_.places.size(); ++i) {
       if (!has_solid_[i]) add_spot(i);
     }
@@ -146,6 +146,7 @@ class Animator {
     return std::move(nodes_);
   }
 
+  const std::vector<std::string>& left_out() const { return left_out_; }
   bool is_flat() const { return box_.isEmpty() || box_.sizes().z() == 0; }
 
  private:
@@ -153,8 +154,7 @@ class Animator {
 
   double largest_solid() const {
     double largest = 0;
-    if (rows_.empty()) return largest;
-    for (const PlacedSolids& placed : placed_solids(parts_, sizes_, rows_.front())) {
+    for (const PlacedSolids& placed : solids_) {
       for (const Solid& solid : placed.solids) {
         largest = std::max(largest, 2 * solid.ball);
         for (const std::vector<Point>& face : solid.faces) {
@@ -175,7 +175,7 @@ class Animator {
     const auto finite = [](const Point& p) { return p.allFinite(); };
     if (node.mesh.triangles.empty() || !std::all_of(node.mesh.points.begin(), node.mesh.points.end(), finite) ||
         !std::all_of(node.translation.begin(), node.translation.end(), finite))
-      return;
+      return left_out_.push_back(node.name);
     nodes_.push_back(std::move(node));
   }
 
@@ -191,7 +191,7 @@ class Animator {
         axes.col(0) = vector(row, body->axes[0]);
         axes.col(1) = vector(row, body->axes[1]);
         axes.col(2) = axes.col(0).cross(axes.col(1));
-        if (!axes.allFinite()) return;
+        if (!axes.allFinite()) return;  // a spot, if at least its position is finite
         add_rotation(node, Eigen::Quaterniond(axes));
       }
     }
@@ -252,7 +252,7 @@ class Animator {
     Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
     for (const auto& [a, b] : ends) {
       const Point now = b - a;
-      if (!now.allFinite()) return;
+      if (!now.allFinite()) return left_out_.push_back(node.name);
       // The rotation with the least twist from one keyframe to the next.
       if (now.norm() > 0) {
         rotation = Eigen::Quaterniond::FromTwoVectors(along, now) * rotation;
@@ -266,12 +266,13 @@ class Animator {
   }
 
   const DrawnParts& parts_;
-  const std::vector<double>& sizes_;
   const Rows& rows_;
+  std::vector<PlacedSolids> solids_;
   Eigen::AlignedBox3d box_;
   double extent_ = 1;
   std::vector<bool> has_solid_ = std::vector<bool>(parts_.places.size());
   std::vector<AnimatedNode> nodes_;
+  std::vector<std::string> left_out_;
 };
 
 }  // namespace
@@ -279,7 +280,10 @@ class Animator {
 Animation animation(const DrawnParts& parts, const std::vector<double>& sizes, std::vector<double> t,
                     const std::vector<std::vector<double>>& rows, const std::optional<std::array<double, 3>>& down) {
   Animator animator(parts, sizes, rows);
-  Animation result{std::move(t), animator.run(), Eigen::Quaterniond::Identity()};
+  Animation result;
+  result.t = std::move(t);
+  result.nodes = animator.run();
+  result.left_out = animator.left_out();
   const Point up = down                 ? Point(-Point((*down)[0], (*down)[1], (*down)[2]))
                    : animator.is_flat() ? Point(Point::UnitY())
                                         : Point(Point::UnitZ());
