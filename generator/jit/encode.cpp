@@ -102,11 +102,22 @@ class Body {
       a_.test(inputs, inputs);
       a_.cmovz(inputs, x86::rax);
     }
-    for (std::size_t r = 0; r < function_.may_be_null.size(); ++r)
-      a_.mov(x86::ptr(x86::rsp, offset_of(result_pointers_ + r)), argument_register(k++));
+    for (std::size_t r = 0; r < function_.may_be_null.size(); ++r, ++k) {
+      x86::Gp from = x86::rax;
+      if (k < argument_registers)
+        from = argument_register(k);
+      else
+        a_.mov(from, stack_argument(k));
+      a_.mov(x86::ptr(x86::rsp, offset_of(result_pointers_ + r)), from);
+    }
     a_.mov(numbers, reinterpret_cast<std::uint64_t>(constants_));
     if (function_.reads_time) a_.movsd(x86::ptr(x86::rsp, offset_of(function_.time)), x86::xmm0);
     if (!function_.mode_values.empty()) load_mode(has_mode ? std::optional(mode) : std::nullopt);
+  }
+
+  /// The seventh argument and further ones are above the frame, the saved registers and the return address.
+  x86::Mem stack_argument(std::size_t k) const {
+    return x86::ptr(x86::rsp, frame_ + offset_of(saved_registers + 1 + k - argument_registers));
   }
 
   /// Stores the values that `mode` determines. Without it, or if it is null, all entries are 0.
@@ -413,6 +424,6 @@ ASMJIT_BEGIN_NAMESPACE
 namespace DebugUtils {
 const char* errorAsString(Error) noexcept { return "an instruction that cannot be encoded"; }
 void debugOutput(const char*) noexcept {}
-[[noreturn]] void assertionFailed(const char*, int, const char*) noexcept { std::abort(); }
+void assertionFailed(const char*, int, const char*) noexcept { std::abort(); }
 }  // namespace DebugUtils
 ASMJIT_END_NAMESPACE
