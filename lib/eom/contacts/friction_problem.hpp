@@ -130,17 +130,18 @@ class Solver {
     const auto h = static_cast<Index>(held_.size()), f = static_cast<Index>(free_.size());
     G_ = Matrix(f, f), q_ = Vector(f);
     for (Index i = 0; i < f; ++i) {
-      q_(i) = p_.q(free_[i]);
-      for (Index k = 0; k < f; ++k) G_(i, k) = p_.G(free_[i], free_[k]);
+      q_(i) = p_.q(free_at(i));
+      for (Index k = 0; k < f; ++k) G_(i, k) = p_.G(free_at(i), free_at(k));
     }
     H_ = Matrix::Zero(h, f), h0_ = Vector::Zero(h);
     if (h == 0) return;
     Matrix of_held(h, h), cross(h, f), back(f, h);
     Vector right(h);
     for (Index i = 0; i < h; ++i) {
-      right(i) = -p_.q(held_[i]);
-      for (Index k = 0; k < h; ++k) of_held(i, k) = p_.G(held_[i], held_[k]);
-      for (Index k = 0; k < f; ++k) cross(i, k) = p_.G(held_[i], free_[k]), back(k, i) = p_.G(free_[k], held_[i]);
+      right(i) = -p_.q(held_at(i));
+      for (Index k = 0; k < h; ++k) of_held(i, k) = p_.G(held_at(i), held_at(k));
+      for (Index k = 0; k < f; ++k)
+        cross(i, k) = p_.G(held_at(i), free_at(k)), back(k, i) = p_.G(free_at(k), held_at(i));
     }
     h0_ = solve_least_norm(of_held, right).x;
     for (Index k = 0; k < f; ++k) H_.col(k) = solve_least_norm(of_held, -cross.col(k)).x;
@@ -246,7 +247,7 @@ class Solver {
     constexpr double enough = 1e-13;
     const Index f = q_.size();
     Vector y(f);
-    for (Index i = 0; i < f; ++i) y(i) = result.force(free_[i]);
+    for (Index i = 0; i < f; ++i) y(i) = result.force(free_at(i));
     Vector velocity = G_ * y + q_;
     const auto set = [&](Index i, double value) {
       const double change = value - y(i);
@@ -259,7 +260,8 @@ class Solver {
     for (int round = 0; round < most; ++round) {
       double moved = 0;
       for (Index i = 0; i < f; ++i) {
-        if (p_.kinds[static_cast<std::size_t>(free_[i])] != FrictionProblem::Kind::closes || !(G_(i, i) > 0)) continue;
+        if (p_.kinds[static_cast<std::size_t>(free_at(i))] != FrictionProblem::Kind::closes || !(G_(i, i) > 0))
+          continue;
         moved = std::max(moved, set(i, std::max(0.0, y(i) - velocity(i) / G_(i, i))));
       }
       for (const FrictionLaw& law : p_.laws) moved = std::max(moved, rub(law, y, velocity, set));
@@ -291,6 +293,9 @@ class Solver {
   static constexpr std::size_t polygon = 8;
 
   const FrictionProblem& p_;
+  Index held_at(Index i) const { return held_[static_cast<std::size_t>(i)]; }
+  Index free_at(Index i) const { return free_[static_cast<std::size_t>(i)]; }
+
   std::vector<Index> held_, free_;
   Matrix G_, H_;
   Vector q_, h0_;

@@ -29,7 +29,8 @@ class Tableau {
  public:
   using Index = Eigen::Index;
 
-  Tableau(const Eigen::MatrixXd& M, const Eigen::VectorXd& q) : n_(q.size()), table_(n_, 2 * n_ + 2), basic_(n_) {
+  Tableau(const Eigen::MatrixXd& M, const Eigen::VectorXd& q)
+      : n_(q.size()), table_(n_, 2 * n_ + 2), basic_(static_cast<std::size_t>(n_)) {
     table_.leftCols(n_).setIdentity();
     table_.middleCols(n_, n_) = -M;
     table_.col(2 * n_).setConstant(-1);
