@@ -17,6 +17,8 @@ struct Word {
   const char* text;
   T value;
 };
+template <typename T>
+Word(const char*, T) -> Word<T>;
 
 constexpr std::array attitudes{Word{"euler", Attitude::euler}, Word{"euler_parameters", Attitude::euler_parameters}};
 constexpr std::array frictions{Word{"smooth", FrictionLaw::smooth}, Word{"dry", FrictionLaw::dry},
