@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Derivatives of the right-hand side of serial arms: the table of docs/benchmarks.md, "Derivatives".
+"""Derivatives of the right-hand side and inverse dynamics: the table of docs/benchmarks.md, "Derivatives".
 
-    bench/derivatives.py EOMGEN [--write] [N ...]
+    bench/derivatives.py EOMGEN [--write] [--robots FOLDER] [MODEL ...]
 
-Each row is the arm of bench/growth_models.py with N joints: operations of the right-hand side and of its Jacobian, the median time of one call of the right-hand side, of M and h and of the Jacobian (gcc -O3
--march=native), how many right-hand sides the Jacobian costs, processor seconds of the whole `emit` and of the compiler at -O2. With --write the table in docs/benchmarks.md is replaced.
+Each row is a model FAMILY:N of bench/growth_models.py, or a robot of FOLDER (NAME.urdf, on a floating base): operations
+of the right-hand side and of its derivatives, the median time of one call of each (gcc -O3 -march=native), and processor
+seconds of the compiler at -O2 for all of them. `adjoint` is v^T df/dx, v^T df/dp and v^T df/du. With --write the table in
+docs/benchmarks.md is replaced.
 """
 import json
 import os
@@ -12,13 +14,16 @@ import pathlib
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 
 import growth_models
 from growth import main, measured
 
 BEGIN, END = "<!-- derivatives: written by bench/derivatives.py -->", "<!-- end of derivatives -->"
-SIZES = (7, 20, 50)
+MODELS = ("arm:7", "arm:20", "arm:50", "chain:20", "beam:40", "n_four_bar:40")
+FLOATING = ("talos", "solo12")
+FUNCTIONS = ("jac", "jac_p", "jvp", "vjp", "adjoint", "inverse")
 DRIVER = r"""
 #define _POSIX_C_SOURCE 199309L
 #include "NAME.h"
@@ -26,21 +31,26 @@ DRIVER = r"""
 #include <stdlib.h>
 #include <time.h>
 
-enum { n = SIZE, N = 2 * n, repeats = 31 };
-static double x[N], p[1000], dx[N], M[n * n], h[n], dfdx[N * N], dfdt[N];
+enum { N = STATES, P = PARAMETERS, repeats = 31 };
+static double x[N], p[P + 1], dx[N], v[N], a[N * (N + P)], b[N + P], c[N];
 
 static double now(void) {
   struct timespec t;
   clock_gettime(CLOCK_MONOTONIC, &t);
   return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
 }
-static int rising(const void* a, const void* b) {
-  const double x = *(const double*)a, y = *(const double*)b;
-  return (x > y) - (x < y);
+static int rising(const void* left, const void* right) {
+  const double one = *(const double*)left, other = *(const double*)right;
+  return (one > other) - (one < other);
 }
 static int rhs(void) { return NAME_rhs(0, x, p, NULL, NULL, dx); }
-static int mass(void) { return NAME_mass(0, x, p, M, h); }
-static int jac(void) { return NAME_jac(0, x, p, NULL, NULL, dfdx, dfdt); }
+static int mass(void) { return NAME_mass(0, x, p, a, b); }
+static int jac(void) { return NAME_jac(0, x, p, NULL, NULL, a, b); }
+static int jac_p(void) { return NAME_jac_p(0, x, p, NULL, NULL, a); }
+static int jvp(void) { return NAME_jvp(0, x, p, NULL, NULL, v, a); }
+static int vjp(void) { return NAME_vjp(0, x, p, NULL, NULL, v, a); }
+static int adjoint(void) { return NAME_adjoint(0, x, p, NULL, NULL, v, a, b, c); }
+static int inverse(void) { return NAME_inverse(0, x, p, NULL, NULL, v, a); }
 
 /* The median of the mean times of `calls` calls, each from a state of its own, in ns. */
 static double median(int (*function)(void), int calls) {
@@ -48,7 +58,7 @@ static double median(int (*function)(void), int calls) {
   for (int r = 0; r < repeats; ++r) {
     const double begin = now();
     for (int k = 0; k < calls; ++k) {
-      x[k % N] += 1e-9;
+      v[k % N] += 1e-9;
       if (function() != 0) exit(1);
     }
     times[r] = (now() - begin) / calls;
@@ -58,44 +68,72 @@ static double median(int (*function)(void), int calls) {
 }
 
 int main(void) {
+  int (*const all[])(void) = {rhs, mass, jac, jac_p, jvp, vjp, adjoint, inverse};
   NAME_defaults(x, p);
-  for (int i = 0; i < n; ++i) x[n + i] = 0.1 * (i + 1);
-  printf("[%.0f, %.0f, %.0f]", median(rhs, CALLS), median(mass, CALLS), median(jac, CALLS));
+  for (int i = N / 2; i < N; ++i) x[i] += SPREAD * (i - N / 2 + 1);
+  for (int i = 0; i < N; ++i) v[i] = 1 - 0.01 * i;
+  for (int k = 0; k < 8; ++k) printf("%s%.0f", k == 0 ? "[" : ", ", median(all[k], CALLS));
+  printf("]");
   return 0;
 }
 """
+COLUMNS = ("model", "N", "P", "flops: rhs", *FUNCTIONS, "ns: rhs", "M and h", *FUNCTIONS, "jac/rhs", "adjoint/rhs", "compile, s")
 
 
 def flops(source, function):
-    return int(re.search(rf" \* {function} +(\d+) flops", source).group(1))
+    found = re.search(rf" \* {function} +(\d+) flops", source)
+    return int(found.group(1)) if found else 0
 
 
-def row(eomgen, compiler, n, folder):
-    name = f"arm_{n}"
-    model = folder / f"{name}.toml"
-    model.write_text(growth_models.arm(n))
-    emitting, _, code, text = measured([eomgen, "emit", model, "-o", folder, "--target", "c", "--with", "jac,mass", "--json"])
+def model_text(eomgen, what, robots):
+    """The text of a model, and the rates that are added to its start (0: those of its scene, which satisfy constraints)."""
+    if ":" in what:
+        family, n = what.split(":")
+        return growth_models.FAMILIES[family](int(n)), 0.0 if family == "n_four_bar" else 0.1
+    path = next(iter(sorted(pathlib.Path(robots).rglob(f"*{what}*.urdf"))))
+    return subprocess.run([eomgen, "import", path, "--floating"], check=True, capture_output=True, text=True).stdout, 0.0
+
+
+def row(eomgen, compiler, what, robots, folder):
+    name = re.sub("[^a-z0-9]", "_", what)
+    text, spread = model_text(eomgen, what, robots)
+    (folder / f"{name}.toml").write_text(text)
+    functions = ",".join(("mass", *FUNCTIONS))
+    _, _, code, text = measured([eomgen, "emit", folder / f"{name}.toml", "-o", folder, "--target", "c", "--with", functions, "--json"])
     if code != 0:
-        return f"| {n} | {'too long' if code is None else f'exit code {code}'} | | | | | | | |"
+        return [what, "too long" if code is None else f"exit code {code}"]
     if not json.loads(text)["certificate"].startswith("pass"):
-        return f"| {n} | the derivations disagree | | | | | | | |"
+        return [what, "the derivations disagree"]
     source = (folder / f"{name}.c").read_text()
     compiling, _, _, _ = measured([compiler, "-O2", "-c", "-o", folder / "model.o", folder / f"{name}.c"])
-    driver = folder / "driver.c"
-    driver.write_text(DRIVER.replace("NAME", name).replace("SIZE", str(n)).replace("CALLS", str(max(50, 100_000 // n**2))))
-    subprocess.run([compiler, "-O3", "-march=native", "-I", folder, "-o", folder / "driver", driver, folder / f"{name}.c", "-lm"], check=True)
-    rhs, mass, jac = json.loads(subprocess.run([folder / "driver"], check=True, capture_output=True, text=True).stdout)
-    return f"| {n} | {flops(source, 'rhs')} | {flops(source, 'jac')} | {rhs} | {mass} | {jac} | {jac / rhs:.1f} | {emitting:.1f} | {compiling:.1f} |"
+    header = (folder / f"{name}.h").read_text()
+    states, parameters = (int(re.search(rf"{name}_{what} = (\d+)", header).group(1)) for what in ("state_count", "parameter_count"))
+    values = {"NAME": name, "STATES": states, "PARAMETERS": parameters, "SPREAD": spread, "CALLS": max(20, 200_000 // states**2)}
+    driver = DRIVER
+    for key, value in values.items():
+        driver = driver.replace(key, str(value))
+    (folder / "driver.c").write_text(driver)
+    subprocess.run([compiler, "-O3", "-march=native", "-I", folder, "-o", folder / "driver", folder / "driver.c", folder / f"{name}.c", "-lm"], check=True)
+    times = json.loads(subprocess.run([folder / "driver"], check=True, capture_output=True, text=True).stdout)
+    return [what, states, parameters, flops(source, "rhs"), *(flops(source, f) for f in FUNCTIONS), *times,
+            f"{times[2] / times[0]:.1f}", f"{times[6] / times[0]:.1f}", f"{compiling:.1f}"]
 
 
-def table(eomgen, sizes):
-    yield "| n | flops of rhs | of jac | rhs, ns | M and h, ns | jac, ns | jac/rhs | emit, s | compile, s |"
-    yield "|---|---|---|---|---|---|---|---|---|"
+def table(eomgen, arguments):
+    robots = None
+    if "--robots" in arguments:
+        at = arguments.index("--robots")
+        robots = arguments[at + 1]
+        arguments = arguments[:at] + arguments[at + 2:]
+    yield f"| {' | '.join(COLUMNS)} |"
+    yield "|---" * len(COLUMNS) + "|"
     compiler = shutil.which(os.environ.get("CC", "gcc"))
     with tempfile.TemporaryDirectory() as folder:
-        for n in [int(size) for size in sizes] or SIZES:
-            yield row(eomgen, compiler, n, pathlib.Path(folder))
+        for what in arguments or (*MODELS, *(FLOATING if robots else ())):
+            cells = row(eomgen, compiler, what, robots, pathlib.Path(folder))
+            yield f"| {' | '.join(str(cell) for cell in cells)}{' |' * (len(COLUMNS) - len(cells))} |"
+            print(cells, file=sys.stderr)
 
 
 if __name__ == "__main__":
-    main("bench/derivatives.py EOMGEN [--write] [N ...]", BEGIN, END, table)
+    main("bench/derivatives.py EOMGEN [--write] [--robots FOLDER] [MODEL ...]", BEGIN, END, table)

@@ -15,7 +15,7 @@ namespace eomgen::abi {
 /// The arguments of a compiled function. A function reads only those that it takes.
 struct CallArguments {
   double t = 0;
-  const double *x = nullptr, *p = nullptr, *w = nullptr, *u = nullptr;
+  const double *x = nullptr, *p = nullptr, *w = nullptr, *u = nullptr, *v = nullptr;
   const int *mode = nullptr, *to = nullptr;
   int order = 0;
   std::array<double*, 3> results{};
@@ -39,6 +39,8 @@ constexpr auto argument(const CallArguments& given) {
     return given.mode;
   else if constexpr (input == Input::order)
     return given.order;
+  else if constexpr (input == Input::vector)
+    return given.v;
   else
     return given.to;
 }

@@ -33,12 +33,19 @@ const char* name(Input input) {
     case Input::inputs: return "u";
     case Input::mode: return "mode";
     case Input::order: return "order";
+    case Input::vector: return "v";
     case Input::to: break;
   }
   return "to";
 }
 
 bool Function::has_input(Input input) const { return std::find(inputs.begin(), inputs.end(), input) != inputs.end(); }
+
+VectorEntries vector_entries(const Function& function) {
+  if (!function.has_input(Input::vector)) return VectorEntries::none;
+  if (function.name == "hvp") return VectorEntries::states_twice;
+  return function.name == "inverse" ? VectorEntries::accelerations : VectorEntries::states;
+}
 
 const std::vector<Function>& functions() {
   static const std::vector<Function> table = all();

@@ -35,8 +35,8 @@ struct FunctionValues {
 /// A state for the self test (self_test.hpp).
 struct TestVector {
   double t = 0;
-  std::vector<int> mode;  // empty: all entries are 0
-  std::vector<double> x, p, u;
+  std::vector<int> mode;                  // empty: all entries are 0
+  std::vector<double> x, p, u, v;         // v: of the function with the longest one
   std::vector<FunctionValues> functions;  // rhs first
 };
 

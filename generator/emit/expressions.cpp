@@ -45,6 +45,7 @@ Expression Expressions::unsigned_value(const Operand& operand) const {
       if (!dialect_.lane_prefix.empty()) return {names_.prepared.at(operand.index), Expression::atom};
       if (dialect_.element != nullptr) return {dialect_.element(names_.w, operand.index), Expression::atom};
       return {fmt::format("{}[{}]", names_.w, operand.index), Expression::atom};
+    case Slot::vector: return {names_.vector[operand.index], Expression::atom};
     case Slot::side: return {names_.sides[operand.index], Expression::atom};
     case Slot::contact: return {names_.contacts[operand.index], Expression::atom};
     case Slot::value: break;

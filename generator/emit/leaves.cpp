@@ -24,6 +24,7 @@ std::string leaf_value(const Dialect& dialect, const ModelNames& names, const Em
   switch (slot) {
     case Slot::state: return dialect.rounded(fmt::format("{}[{}]", names.x, i));
     case Slot::parameter: return dialect.rounded(fmt::format("{}[{}]", names.p, i));
+    case Slot::vector: return dialect.rounded(fmt::format("{}[{}]", names.v, i));
     case Slot::contact: {
       const std::string state = mode_entry(names, i / 2), one = dialect.constant(1);
       if (i % 2 == 1) return fmt::format("{0} < {1} ? {2} : -{2}", state, eom::contact_states / 2, one);
@@ -49,12 +50,13 @@ std::string leaf_of_lanes(const Dialect& dialect, const ModelNames& names, const
                           const std::string& block, Slot slot, std::uint32_t i, bool takes_inputs) {
   const auto entry = [&](int array) {
     return fmt::format("{}at({}, {}, {})", dialect.lane_prefix, block, array, i);
-  };  // loads an entry of the arrays t, x, p, w, u
+  };  // loads an entry of the arrays t, x, p, w, u, v
   switch (slot) {
     case Slot::time: return entry(0);
     case Slot::state: return entry(1);
     case Slot::parameter: return entry(2);
     case Slot::prepared: return entry(3);
+    case Slot::vector: return entry(5);
     case Slot::input:
       return takes_inputs ? entry(4)
                           : fmt::format("{}all({})", dialect.lane_prefix, dialect.value(context.inputs.at(i).value));
@@ -72,8 +74,8 @@ std::vector<LeafLoads> leaf_loads(const std::string& function, const Leaves& lea
                                   const EmissionContext& context, const Dialect& dialect, const std::string& block) {
   const bool lanes = !dialect.lane_prefix.empty(), inputs = program::takes_inputs(function);
   std::vector<LeafLoads> result;
-  for (const Slot slot :
-       {Slot::time, Slot::prepared, Slot::state, Slot::parameter, Slot::contact, Slot::input, Slot::side}) {
+  for (const Slot slot : {Slot::time, Slot::prepared, Slot::state, Slot::parameter, Slot::vector, Slot::contact,
+                          Slot::input, Slot::side}) {
     if ((slot == Slot::time || slot == Slot::prepared) && !lanes) continue;
     LeafLoads of{slot, {}};
     for (const auto& [leaf_slot, i] : leaves) {

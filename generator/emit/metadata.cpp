@@ -12,6 +12,7 @@
 #include "emit/start/start.hpp"
 #include "emit/text.hpp"
 #include "error.hpp"
+#include "program/internal_functions.hpp"
 #include "program/kinks.hpp"
 #include "program/taylor.hpp"
 
@@ -381,6 +382,7 @@ void require_consistent(const program::Program& program, const EmissionContext& 
             "states of the self test");
     require(test.p.size() == context.parameters.size(), "parameters of the self test");
     require(test.u.size() == context.inputs.size(), "inputs of the self test");
+    require(test.v.size() == program::vector_size(program), "vectors of the self test");
   }
   for (const program::Function& function : program.functions) {
     for (const program::Instruction& instruction : function.code) {

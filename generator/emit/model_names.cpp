@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include "emit/names.hpp"
 #include "emit/straight_line.hpp"
+#include "program/internal_functions.hpp"
 
 namespace eomgen::emit {
 
@@ -41,6 +44,9 @@ ModelNames model_names(const program::Program& program, const EmissionContext& c
   names.w = table.declare("w");
   names.u = table.declare("u");
   names.mode = table.declare("mode");
+  const std::size_t vector = program::vector_size(program);
+  if (vector > 0) names.v = table.declare("v");
+  for (std::size_t i = 0; i < vector; ++i) names.vector.push_back(table.declare(fmt::format("v_{}", i)));
   names.first_kink = program.mode_layout().kink(0);
   for (std::size_t k = 0; k < program.kinks.size(); ++k)
     names.sides.push_back(table.declare("side_" + std::to_string(k + 1)));

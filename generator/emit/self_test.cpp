@@ -15,6 +15,7 @@
 #include "emit/text.hpp"
 #include "numeric/numbers.hpp"
 #include "program/abi_values.hpp"
+#include "program/internal_functions.hpp"
 
 namespace eomgen::emit {
 namespace {
@@ -42,6 +43,7 @@ program::AbiArguments arguments_of(const TestVector& at, const EmissionContext& 
   arguments.at.x = exact(at.x);
   arguments.at.p = exact(at.p);
   arguments.at.u = exact(at.u);
+  arguments.at.v = exact(at.v);
   arguments.at.mode = at.mode;
   arguments.order = taylor_order;
   for (const Quantity& input : context.inputs) arguments.default_inputs.push_back(numeric::exact(input.value));
@@ -149,7 +151,8 @@ class Body {
         real_(real_of(context, dialect)),
         suffix_(real_ == "float" ? "f" : ""),
         at_p_(1 + program.state_count()),
-        at_u_(at_p_ + context.parameters.size()) {}
+        at_u_(at_p_ + context.parameters.size()),
+        at_v_(at_u_ + context.inputs.size()) {}
 
   std::string operator()() {
     points();
@@ -181,14 +184,16 @@ class Body {
     std::string rows, modes;
     for (const TestVector& test : context_.tests) {
       std::vector<double> all{test.t};
-      for (const auto* part : {&test.x, &test.p, &test.u}) all.insert(all.end(), part->begin(), part->end());
+      for (const auto* part : {&test.x, &test.p, &test.u, &test.v}) all.insert(all.end(), part->begin(), part->end());
       rows += wrapped("      {" + list(all) + "}", "       ") + ",\n";
       modes += wrapped("      {" + integers(test.mode) + "}", "       ") + ",\n";
     }
     rows.erase(rows.size() - 2);
-    text_ += fmt::format("  {}\n", comment(dialect_, "t, x, p, u of each state"));
-    text_ += fmt::format("  static const {} points[{}][{}] = {{\n{}}};\n", real_, context_.tests.size(),
-                         at_u_ + context_.inputs.size(), rows);
+    const std::size_t vector = program::vector_size(program_);
+    text_ += fmt::format("  {}\n",
+                         comment(dialect_, vector > 0 ? "t, x, p, u, v of each state" : "t, x, p, u of each state"));
+    text_ += fmt::format("  static const {} points[{}][{}] = {{\n{}}};\n", real_, context_.tests.size(), at_v_ + vector,
+                         rows);
     with_modes_ = std::any_of(context_.tests.begin(), context_.tests.end(),
                               [](const TestVector& test) { return has_mode(test); });
     if (with_modes_) {
@@ -318,6 +323,7 @@ class Body {
       case abi::Input::prepared: return "w";
       case abi::Input::mode: return with_modes_ ? "modes[state]" : names_.null_pointer;
       case abi::Input::order: return std::to_string(taylor_order);
+      case abi::Input::vector: return fmt::format("point + {}", at_v_);
       case abi::Input::to: return to == 0 ? names_.null_pointer : "to";
       case abi::Input::inputs: break;
     }
@@ -333,7 +339,7 @@ class Body {
   const SelfTestNames& names_;
   const Dialect& dialect_;
   std::string real_, suffix_;
-  std::size_t at_p_, at_u_;
+  std::size_t at_p_, at_u_, at_v_;
   bool with_modes_ = false, starts_ = false;
   std::string text_;
 };

@@ -63,7 +63,8 @@ class Printer {
 
  private:
   void declare_names() {
-    for (const auto* list : {&names_.sides, &names_.contacts, &names_.state, &names_.parameters, &names_.inputs}) {
+    for (const auto* list :
+         {&names_.sides, &names_.contacts, &names_.state, &names_.parameters, &names_.inputs, &names_.vector}) {
       for (const std::string& name : *list) table_.declare(name);
     }
     for (const std::string& name : {names_.time, names_.x, names_.p, names_.w, names_.u, names_.mode})

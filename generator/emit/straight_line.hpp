@@ -58,10 +58,11 @@ struct ModelNames {
   std::vector<std::string> sides;     // kinks whose branches `mode` freezes
   std::size_t first_kink = 0;         // entry of `mode`
   std::vector<std::string> contacts;  // per contact: slides_NAME, normal_force_sign_NAME (eom/modes/contact_state.hpp)
-  std::vector<std::string> acceleration;     // "theta_ddot", for the free coordinates
-  std::vector<std::string> all_coordinates;  // with eliminated ones (for names that a Program suggests)
-  std::vector<std::string> prepared;         // entries of w, if lanes are loaded one by one
-  std::string time = "t", x, p, w, u, mode;  // names of the other arguments
+  std::vector<std::string> acceleration;              // "theta_ddot", for the free coordinates
+  std::vector<std::string> all_coordinates;           // with eliminated ones (for names that a Program suggests)
+  std::vector<std::string> prepared;                  // entries of w, if lanes are loaded one by one
+  std::vector<std::string> vector;                    // entries of v, if a function takes it
+  std::string time = "t", x, p, w, u, mode, v = "v";  // names of the other arguments
 };
 /// The identifiers of a model. `taken`: further reserved words. `longest`: the most characters of a name.
 ModelNames model_names(const program::Program& program, const EmissionContext& context,

@@ -128,19 +128,27 @@ std::vector<double> CompiledModel::input_values(double t) const {
 
 namespace {
 
+/// Calls a function that takes inputs, and v if it takes that.
+template <class Function, class... Results>
+int call_with_inputs(Function function, const CompiledModel::Arguments& at, const double* p, const double* u,
+                     Results... results) {
+  if constexpr (requires { function(at.t, at.x, p, u, at.mode, at.v, results...); })
+    return function(at.t, at.x, p, u, at.mode, at.v, results...);
+  else
+    return function(at.t, at.x, p, u, at.mode, results...);
+}
+
 /// Calls a function with the numbers of the scene in place of those that are not given.
 template <class Function, class... Results>
 int call(const CompiledModel& model, Function function, const CompiledModel::Arguments& at, const double* parameters,
          const std::vector<double>& constant_inputs, Results... results) {
   if (function == nullptr) return CompiledModel::not_compiled;
   const double* const p = at.parameters != nullptr ? at.parameters : parameters;
-  if constexpr (requires { function(at.t, at.x, p, p, at.mode, results...); }) {
+  if constexpr (!requires { function(at.t, at.x, p, results...); }) {
     if (at.inputs != nullptr || !constant_inputs.empty() || model.inputs().empty()) {
-      const double* const u = at.inputs != nullptr ? at.inputs : constant_inputs.data();
-      return function(at.t, at.x, p, u, at.mode, results...);
+      return call_with_inputs(function, at, p, at.inputs != nullptr ? at.inputs : constant_inputs.data(), results...);
     }
-    const std::vector<double> u = model.input_values(at.t);
-    return function(at.t, at.x, p, u.data(), at.mode, results...);
+    return call_with_inputs(function, at, p, model.input_values(at.t).data(), results...);
   } else {
     return function(at.t, at.x, p, results...);
   }
@@ -165,6 +173,15 @@ int CompiledModel::rhs(const Arguments& at, double* dx) const {
 int CompiledModel::jac(const Arguments& at, double* dfdx, double* dfdt) const { return EOMGEN_CALL(jac, dfdx, dfdt); }
 int CompiledModel::jac_p(const Arguments& at, double* dfdp) const { return EOMGEN_CALL(jac_p, dfdp); }
 int CompiledModel::jac_u(const Arguments& at, double* dfdu) const { return EOMGEN_CALL(jac_u, dfdu); }
+int CompiledModel::jvp(const Arguments& at, double* Jv) const { return EOMGEN_CALL(jvp, Jv); }
+int CompiledModel::vjp(const Arguments& at, double* vJ) const { return EOMGEN_CALL(vjp, vJ); }
+int CompiledModel::adjoint(const Arguments& at, double* vJ, double* vP, double* vU) const {
+  return EOMGEN_CALL(adjoint, vJ, vP, vU);
+}
+int CompiledModel::hvp(const Arguments& at, double* Hd) const { return EOMGEN_CALL(hvp, Hd); }
+int CompiledModel::inverse(const Arguments& at, double* tau) const { return EOMGEN_CALL(inverse, tau); }
+int CompiledModel::coriolis(const Arguments& at, double* C) const { return EOMGEN_CALL(coriolis, C); }
+int CompiledModel::gravity(const Arguments& at, double* g) const { return EOMGEN_CALL(gravity, g); }
 int CompiledModel::mass(const Arguments& at, double* M, double* h) const { return EOMGEN_CALL(mass, M, h); }
 int CompiledModel::momenta(const Arguments& at, double* p, double* rates) const {
   return EOMGEN_CALL(momenta, p, rates);

@@ -28,8 +28,9 @@ struct CompileOptions {
   std::string form = "auto";               // see EmitOptions::form
   std::string tier = "auto";               // see RunOptions::tier
   std::optional<std::string> solver = {};  // of simulations, one of solvers(); replaces the scene's
-  /// Functions beside rhs and outputs: "jac", "jac_p", "jac_u", "mass", "momenta", "constraints", "reactions",
-  /// "events", "taylor". None given: jac, mass, and for a model with constraints also constraints and reactions.
+  /// Functions beside rhs and outputs: "jac", "jac_p", "jac_u", "jvp", "vjp", "adjoint", "hvp", "inverse", "coriolis",
+  /// "gravity", "mass", "momenta", "constraints", "reactions", "events", "taylor". None given: jac, mass, and for a
+  /// model with constraints also constraints and reactions.
   std::optional<std::vector<std::string>> functions = {};
   std::vector<std::string> outputs = {};  // in addition to coordinates; replace the scene's; "all": every output
   bool charts = true;                     // allow simulations to change charts near singularities
@@ -83,14 +84,22 @@ class CompiledModel {
     const double* parameters = nullptr;  // P; null: those of the scene
     const double* inputs = nullptr;      // U; null: those of the scene at t
     const int* mode = nullptr;           // mode_size() (docs/abi.md, "Modes"); null: all entries are 0
+    const double* v = nullptr;           // of jvp, vjp, adjoint: N; of hvp: 2 N; of inverse: n
   };
   // Each function returns a code of docs/abi.md: 0 if the results are valid, 2 at a singular state. A function that was
   // not compiled returns not_compiled. Results must not overlap with arguments.
   static constexpr int not_compiled = -1;
-  int rhs(const Arguments& at, double* dx) const;                    // N
-  int jac(const Arguments& at, double* dfdx, double* dfdt) const;    // N x N by columns; N, at fixed x, or null
-  int jac_p(const Arguments& at, double* dfdp) const;                // N x P by columns
-  int jac_u(const Arguments& at, double* dfdu) const;                // N x U by columns
+  int rhs(const Arguments& at, double* dx) const;                  // N
+  int jac(const Arguments& at, double* dfdx, double* dfdt) const;  // N x N by columns; N, at fixed x, or null
+  int jac_p(const Arguments& at, double* dfdp) const;              // N x P by columns
+  int jac_u(const Arguments& at, double* dfdu) const;              // N x U by columns
+  int jvp(const Arguments& at, double* Jv) const;                  // (df/dx) v: N
+  int vjp(const Arguments& at, double* vJ) const;                  // v^T (df/dx): N
+  int adjoint(const Arguments& at, double* vJ, double* vP, double* vU) const;  // v^T df/dx, df/dp, df/du: N; P; U
+  int hvp(const Arguments& at, double* Hd) const;                              // d(c^T df/dx)/dx d, v = (c, d): N
+  int inverse(const Arguments& at, double* tau) const;                         // M v + h with the inputs: n
+  int coriolis(const Arguments& at, double* C) const;                // by Christoffel symbols: n x n by columns
+  int gravity(const Arguments& at, double* g) const;                 // dU/dq: n
   int mass(const Arguments& at, double* M, double* h) const;         // M qddot + h = A^T lambda: n x n by columns; n
   int momenta(const Arguments& at, double* p, double* rates) const;  // dL/d(qdot): n; rates without constraint forces
   int constraints(const Arguments& at, double* psi, double* A, double* b) const;  // A qdot + b = 0: m; m x n; m

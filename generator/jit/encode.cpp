@@ -89,7 +89,8 @@ class Body {
       switch (input) {
         case abi::Input::state: a_.mov(state, from); break;
         case abi::Input::parameters: a_.mov(parameters, from); break;
-        case abi::Input::prepared: a_.mov(prepared, from); break;
+        case abi::Input::prepared:
+        case abi::Input::vector: a_.mov(prepared, from); break;  // no function takes both
         case abi::Input::inputs: a_.mov(inputs, from); break;
         case abi::Input::mode:
           mode = from;

@@ -81,7 +81,7 @@ const std::vector<Operand>& Operands::read_operands(const program::Instruction& 
 
 bool Operands::is_argument(const Operand& operand) const {
   return operand.slot == Slot::state || operand.slot == Slot::parameter || operand.slot == Slot::prepared ||
-         (operand.slot == Slot::input && takes_inputs_);
+         operand.slot == Slot::vector || (operand.slot == Slot::input && takes_inputs_);
 }
 
 std::optional<double> Operands::constant_value(const Operand& operand) const {
@@ -101,7 +101,8 @@ Location Operands::location(const Operand& operand) {
       return {Place::scratch, written_.time};
     case Slot::state: return {Place::state, operand.index};
     case Slot::parameter: return {Place::parameter, operand.index};
-    case Slot::prepared: return {Place::prepared, operand.index};
+    case Slot::prepared:
+    case Slot::vector: return {Place::prepared, operand.index};
     case Slot::input:
       if (!takes_inputs_) return constant(default_inputs_[operand.index]);
       return {Place::input, operand.index};

@@ -102,9 +102,9 @@ std::optional<std::vector<std::vector<double>>> called(const abi::CompiledFuncti
   std::vector<double> w(described.prepared + 1);
   if (abi::find(function)->has_input(abi::Input::prepared) && m.prepare(p.data(), w.data()) != 0) return std::nullopt;
   const std::vector<int> mode = mode_array(at.mode, described);
-  const abi::CallArguments given{t,        x.data(), p.data(),
-                                 w.data(), u.data(), mode.data(),
-                                 nullptr,  at.order, {y[0].data(), y[1].data(), y[2].data()}};
+  const std::vector<double> v = rounded(at.v);
+  const abi::CallArguments given{t,        x.data(),    p.data(), w.data(), u.data(),
+                                 v.data(), mode.data(), nullptr,  at.order, {y[0].data(), y[1].data(), y[2].data()}};
   if (m.call(function, given) != 0) return std::nullopt;
   return y;
 }

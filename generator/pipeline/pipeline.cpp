@@ -110,7 +110,7 @@ std::vector<program::Program> other_forms(const DerivedModel& derived, const pro
 }
 
 program::AbiArguments abi_arguments(const verify::AbiArguments& at, const std::vector<verify::Real>& default_inputs) {
-  return {{at.t, at.x, at.p, at.u, {}, {}, at.mode}, default_inputs, at.order};
+  return {{at.t, at.x, at.p, at.u, {}, {}, at.mode, at.v}, default_inputs, at.order};
 }
 
 /// The same with the other functions of the ABI.

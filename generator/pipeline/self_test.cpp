@@ -21,6 +21,7 @@ bool satisfies(const abi::CompiledFunctions& functions, const program::Program& 
   given.x = at.x.data();
   given.p = at.p.data();
   given.u = inputs;
+  given.v = at.v.data();
   std::vector<int> mode = at.mode;
   mode.resize(program.mode_layout().size());
   eom::ModeArray to(program.mode_layout());

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "emit/self_test.hpp"
+#include "program/internal_functions.hpp"
 
 namespace eomgen::pipeline {
 namespace {
@@ -34,6 +35,10 @@ std::optional<emit::TestVector> test_vector(const program::Program& program, con
     }
     for (std::size_t i = 0; i < context.inputs.size(); ++i)
       at.u.push_back(context.inputs[i].value + step * (0.25 + 0.0625 * static_cast<double>(i)));
+    // Dyadic numbers, none of them 0 and all different.
+    for (std::size_t i = 0; i < program::vector_size(program); ++i)
+      at.v.push_back((i % 2 == 0 ? 1.0 : -1.0) *
+                     (0.25 + static_cast<double>((7 * i + 5 * static_cast<std::size_t>(k)) % 64) / 64));
     if (auto vector = emit::test_vector(program, context, std::move(at), index)) return vector;
     if (k == 0) break;
   }

@@ -173,6 +173,7 @@ Glyph Notation::operator()(const symbolic::Symbol& symbol) const {
     case SymbolKind::state: return named(model_->states[symbol.index].name, model_->states[symbol.index].tex);
     case SymbolKind::friction: return split_name("F_f_" + std::to_string(symbol.index + 1));
     case SymbolKind::branch:
+    case SymbolKind::vector:
     case SymbolKind::contact_mode: break;
     case SymbolKind::auxiliary:
       if (symbol == reading::momentum_symbol(symbol.index))

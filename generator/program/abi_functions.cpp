@@ -59,19 +59,18 @@ void drop_open_contacts(system::EquationSystem& s) {
   }
 }
 
-/// A function with its result arguments, which have no entries yet.
-FunctionExpressions empty_function(const char* name) {
-  FunctionExpressions function{name, {}, {}, {}};
-  for (const abi::Result& result : abi::find(name)->results) function.results.push_back({result.name, {}});
-  return function;
-}
-
 /// "12", or "3_12" if there are ten or more rows.
 std::string indices(std::size_t i, std::size_t j, std::size_t n) {
   return n < 10 ? fmt::format("{}{}", i + 1, j + 1) : fmt::format("{}_{}", i + 1, j + 1);
 }
 
 }  // namespace
+
+FunctionExpressions empty_function(const char* name) {
+  FunctionExpressions function{name, {}, {}, {}};
+  for (const abi::Result& result : abi::find(name)->results) function.results.push_back({result.name, {}});
+  return function;
+}
 
 AbiFunctions::AbiFunctions(system::EquationSystem system, const std::map<std::uint32_t, symbolic::Rational>& fix,
                            Ties ties, bool hold)
@@ -182,20 +181,28 @@ FunctionExpressions AbiFunctions::rhs() {
 // d(qddot)/ds by differentiating the equations of motion, not their solution. With qddot and lambda constant,
 //   M dqddot = df + dA^T lambda - dM qddot + A^T dlambda,   A dqddot = -(dgamma + dA qddot).
 std::vector<Ref> AbiFunctions::derivative_column(Symbol along) {
-  Dag& dag = *system_.dag;
-  symbolic::Derivation d = symbolic::partial_derivative(dag, along);
-  std::vector<Ref> r, c;
+  symbolic::Derivation d = symbolic::partial_derivative(*system_.dag, along);
+  return differentiated(d, along);
+}
+
+std::vector<Ref> AbiFunctions::differentiated(symbolic::Derivation& d, std::optional<Symbol> along) {
+  std::vector<Ref> result;
   // The solution is differentiated in two cases: the friction law is nonlinear, and a solution by the formulation
   // itself satisfies M, f, A and gamma only on the constraints (Euler parameters of unit length).
-  if (!system_.contacts.empty() || (system_.solution && m_ > 0)) {
-    for (const Ref a : qddot_) r.push_back(d(a));
-    for (const system::FirstOrderState& state : system_.states) r.push_back(d(state.rate));
-    return r;
+  if (differentiates_solution()) {
+    for (const Ref a : qddot_) result.push_back(d(a));
+  } else if (std::optional<std::vector<Ref>> solved = along ? solved_column(d, *along) : std::nullopt) {
+    result = *std::move(solved);
+  } else {
+    result = differentiated_equations(d, along);
   }
-  if (std::optional<std::vector<Ref>> solved = solved_column(d, along)) {
-    for (const system::FirstOrderState& state : system_.states) solved->push_back(d(state.rate));
-    return *std::move(solved);
-  }
+  for (const system::FirstOrderState& state : system_.states) result.push_back(d(state.rate));
+  return result;
+}
+
+std::vector<Ref> AbiFunctions::differentiated_equations(symbolic::Derivation& d, std::optional<Symbol> along) {
+  Dag& dag = *system_.dag;
+  std::vector<Ref> r, c;
   for (std::size_t i = 0; i < n_; ++i) {
     Ref sum = system_.residual ? residual_slope(d, along, i) : d(system_.f[i]);
     for (std::size_t k = 0; k < m_; ++k) sum = dag.add(sum, dag.mul(d(system_.A[k * n_ + i]), lambda_[k]));
@@ -208,20 +215,20 @@ std::vector<Ref> AbiFunctions::derivative_column(Symbol along) {
     for (std::size_t j = 0; j < n_; ++j) sum = dag.add(sum, dag.mul(d(system_.A[k * n_ + j]), qddot_[j]));
     c.push_back(dag.neg(sum));
   }
-  std::vector<Ref> lower = solve()(std::move(r), c).first;
-  for (const system::FirstOrderState& state : system_.states) lower.push_back(d(state.rate));
-  return lower;
+  return solve()(std::move(r), c).first;
 }
 
 // -d(M qddot - f)_i/ds at fixed qddot.
-Ref AbiFunctions::residual_slope(symbolic::Derivation& d, Symbol along, std::size_t i) {
+Ref AbiFunctions::residual_slope(symbolic::Derivation& d, std::optional<Symbol> along, std::size_t i) {
   Dag& dag = *system_.dag;
   const system::Residual& residual = *system_.residual;
   Ref inertia;
-  const auto coordinate = std::find(system_.free.begin(), system_.free.end(), along.index);
-  if (along.kind == SymbolKind::coordinate && coordinate != system_.free.end()) {
+  const bool by_coordinate = along && along->kind == SymbolKind::coordinate;
+  const auto coordinate =
+      by_coordinate ? std::find(system_.free.begin(), system_.free.end(), along->index) : system_.free.end();
+  if (coordinate != system_.free.end()) {
     const auto j = static_cast<std::size_t>(coordinate - system_.free.begin());
-    inertia = (along.order == 0 ? residual.by_q : residual.by_qdot)[i * n_ + j];
+    inertia = (along->order == 0 ? residual.by_q : residual.by_qdot)[i * n_ + j];
   } else {
     inertia = d(residual.inertia[i]);
   }
@@ -299,13 +306,10 @@ FunctionExpressions AbiFunctions::momenta() {
   FunctionExpressions function = empty_function("momenta");
   const Ref lagrangian = dag.sub(system_.kinetic, system_.potential);
   symbolic::Derivation by_time = symbolic::partial_derivative(dag, {SymbolKind::time, 0, 0});
-  std::map<Symbol, Ref> none;
-  for (std::size_t b = 0; b < friction_.phi.size(); ++b)
-    none[{SymbolKind::friction, static_cast<std::uint32_t>(b), 0}] = dag.zero();
-  Substitution frictionless(dag, none);
+  const std::vector<Ref> f = frictionless(modeless_f_);
   for (std::size_t i = 0; i < n_; ++i) {
     const Ref p = symbolic::partial_derivative(dag, {SymbolKind::coordinate, system_.free[i], 1})(lagrangian);
-    Ref rate = dag.add(frictionless(modeless_f_[i]), by_time(p));
+    Ref rate = dag.add(f[i], by_time(p));
     for (std::size_t j = 0; j < n_; ++j) {
       rate = dag.add(
           rate, dag.mul(symbolic::partial_derivative(dag, {SymbolKind::coordinate, system_.free[j], 0})(p), qdot_[j]));
@@ -322,12 +326,8 @@ FunctionExpressions AbiFunctions::mass() {
   for (std::size_t j = 0; j < n_; ++j) {
     for (std::size_t i = 0; i < n_; ++i) function.results[0].entries.push_back(modeless_M_[i * n_ + j]);
   }
-  std::map<Symbol, Ref> none;  // h excludes friction, which depends on the mode
-  for (std::size_t b = 0; b < friction_.phi.size(); ++b) {
-    none[{SymbolKind::friction, static_cast<std::uint32_t>(b), 0}] = system_.dag->zero();
-  }
-  Substitution frictionless(*system_.dag, none);
-  for (const Ref f : modeless_f_) function.results[1].entries.push_back(system_.dag->neg(frictionless(f)));
+  // h excludes friction, which depends on the mode.
+  for (const Ref f : frictionless(modeless_f_)) function.results[1].entries.push_back(system_.dag->neg(f));
   label_matrices(function);
   return function;
 }

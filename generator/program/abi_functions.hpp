@@ -36,6 +36,15 @@ struct FunctionExpressions {
   std::vector<LabelledExpression> labels;
 };
 
+/// A function of the ABI with its result arguments, which have no entries yet.
+FunctionExpressions empty_function(const char* name);
+
+/// How derivatives of the accelerations are taken.
+enum class Differentiate : std::uint8_t {
+  equations,  // M dqddot = .. with qddot and lambda held: one factorisation more
+  solution    // the solved accelerations
+};
+
 /// Solves the equations of motion and builds the functions of the ABI from the solution.
 class AbiFunctions {
  public:
@@ -47,6 +56,16 @@ class AbiFunctions {
   FunctionExpressions jac();
   FunctionExpressions jac_p(std::size_t parameters);
   FunctionExpressions jac_u(std::size_t inputs);
+  /// Derivatives times the argument v (abi/functions.inc). Sources: Griewank and Walther, Evaluating Derivatives, 2008,
+  /// chapter 3.
+  FunctionExpressions jvp(Differentiate by);
+  FunctionExpressions vjp(Differentiate by);
+  FunctionExpressions adjoint(Differentiate by, std::size_t parameters, std::size_t inputs);
+  FunctionExpressions hvp(Differentiate by);
+  /// M v - f without friction of contacts.
+  FunctionExpressions inverse();
+  FunctionExpressions coriolis();
+  FunctionExpressions gravity();
   FunctionExpressions mass();
   FunctionExpressions constraints();
   /// dT/dqdot and its time derivative without constraint forces and contact friction.
@@ -70,8 +89,19 @@ class AbiFunctions {
   void add_solution(FunctionExpressions& function);
   void label_matrices(FunctionExpressions& function);
   std::vector<Ref> derivative_column(symbolic::Symbol along);
+  /// d(qddot, rates of states) for the seeds of `d`; `along`: the symbol, if there is one only.
+  std::vector<Ref> differentiated(symbolic::Derivation& d, std::optional<symbolic::Symbol> along);
+  /// The same by the equations at fixed qddot and lambda.
+  std::vector<Ref> differentiated_equations(symbolic::Derivation& d, std::optional<symbolic::Symbol> along);
+  bool differentiates_solution() const { return !system_.contacts.empty() || (system_.solution && m_ > 0); }
+  std::vector<symbolic::Symbol> state_symbols() const;
+  /// The gradient of v^T f by symbols, v = weights.
+  std::vector<Ref> gradient(Differentiate by, const std::vector<Ref>& weights, const std::vector<symbolic::Symbol>& of);
+  std::vector<Ref> arguments(std::size_t first, std::size_t count);
+  /// An expression without the friction of contacts.
+  std::vector<Ref> frictionless(const std::vector<Ref>& expressions);
   std::optional<std::vector<Ref>> solved_column(symbolic::Derivation& d, symbolic::Symbol along);
-  Ref residual_slope(symbolic::Derivation& d, symbolic::Symbol along, std::size_t i);
+  Ref residual_slope(symbolic::Derivation& d, std::optional<symbolic::Symbol> along, std::size_t i);
   FunctionExpressions derivative_columns(const char* name, symbolic::SymbolKind kind, std::size_t count);
   /// Substitutes the solution for qddot and the active multipliers. Sets `solved` to true if the expression contains
   /// any of them.

@@ -113,9 +113,10 @@ std::vector<Real> taylor_coefficients(const Taylor& taylor, const Arguments<Real
     }
     w[taylor.workspace_size() - 2] = Real(k == 1 ? 1 : 0);
     w[taylor.workspace_size() - 1] = Real(1) / Real(k);
-    Arguments<Real> next{
-        Real(k), {coefficients.end() - static_cast<std::ptrdiff_t>(n), coefficients.end()}, at.p, at.u, w, at.side,
-        at.mode};
+    Arguments<Real> next{Real(k), {coefficients.end() - static_cast<std::ptrdiff_t>(n), coefficients.end()},
+                         at.p,    at.u,
+                         w,       at.side,
+                         at.mode, {}};
     const Values<Real> values = run(taylor.next, next, digits);
     a.push_back(values.results[0]);
     b.push_back(values.results[1]);
@@ -134,8 +135,9 @@ double to_binary64(const cl_R& value) {
 }
 
 Arguments<double> in_binary64(const Arguments<cl_R>& at) {
-  Arguments<double> result{to_binary64(at.t), {}, {}, {}, {}, {}, at.mode};
-  for (const auto& [from, to] : {std::pair{&at.x, &result.x}, {&at.p, &result.p}, {&at.u, &result.u}}) {
+  Arguments<double> result{to_binary64(at.t), {}, {}, {}, {}, {}, at.mode, {}};
+  for (const auto& [from, to] :
+       {std::pair{&at.x, &result.x}, {&at.p, &result.p}, {&at.u, &result.u}, {&at.v, &result.v}}) {
     for (const cl_R& value : *from) to->push_back(to_binary64(value));
   }
   return result;

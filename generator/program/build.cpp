@@ -190,9 +190,13 @@ std::vector<std::unique_ptr<AbiFunctions>> with_residual(const std::vector<syste
   return result;
 }
 
-FunctionExpressions function_expressions(AbiFunctions& functions, const std::string& name, const Request& request) {
+FunctionExpressions function_expressions(AbiFunctions& functions, const std::string& name, const Request& request,
+                                         Differentiate by = Differentiate::equations) {
   static const std::map<std::string_view, FunctionExpressions (AbiFunctions::*)()> formulas{
       {"jac", &AbiFunctions::jac},
+      {"inverse", &AbiFunctions::inverse},
+      {"coriolis", &AbiFunctions::coriolis},
+      {"gravity", &AbiFunctions::gravity},
       {"mass", &AbiFunctions::mass},
       {"momenta", &AbiFunctions::momenta},
       {"constraints", &AbiFunctions::constraints},
@@ -206,8 +210,24 @@ FunctionExpressions function_expressions(AbiFunctions& functions, const std::str
   };
   if (name == "jac_p") return functions.jac_p(count(request.parameters, symbolic::SymbolKind::parameter));
   if (name == "jac_u") return functions.jac_u(count(request.inputs, symbolic::SymbolKind::input));
+  if (name == "jvp") return functions.jvp(by);
+  if (name == "vjp") return functions.vjp(by);
+  if (name == "hvp") return functions.hvp(by);
+  if (name == "adjoint")
+    return functions.adjoint(by, count(request.parameters, symbolic::SymbolKind::parameter),
+                             count(request.inputs, symbolic::SymbolKind::input));
   throw Error("program", {}, fmt::format("there is no function `{}`", name),
               fmt::format("available functions: {}", fmt::join(abi::optional_functions(), ", ")));
+}
+
+/// Derivatives times a vector, which have a second way: through the solved accelerations.
+bool is_product(const std::string& name) {
+  return name == "jvp" || name == "vjp" || name == "adjoint" || name == "hvp";
+}
+
+/// Functions that other formulations than that of the right-hand side may give cheaper.
+bool has_other_ways(const std::string& name) {
+  return name == "jac" || name == "jac_p" || name == "jac_u" || name == "inverse" || is_product(name);
 }
 
 /// The cheapest of several ways to the same derivatives, which need not be that of the right-hand side.
@@ -225,15 +245,19 @@ class Derivatives {
     std::vector<FunctionExpressions> wanted;
     std::vector<PolynomialGraph> raw;
     std::vector<std::size_t> costs;
-    for (AbiFunctions* functions : ways_) {
-      wanted.push_back(function_expressions(*functions, name, request_));
-      raw.push_back(as_derived(*functions, wanted.back()));
+    const auto add = [&](AbiFunctions& functions, Differentiate by) {
+      wanted.push_back(function_expressions(functions, name, request_, by));
+      raw.push_back(as_derived(functions, wanted.back()));
       costs.push_back(count_operations(tested(flatten(raw.back(), false))).cost());
+    };
+    for (AbiFunctions* functions : ways_) {
+      add(*functions, Differentiate::equations);
+      if (is_product(name)) add(*functions, Differentiate::solution);
     }
     const std::size_t least = *std::min_element(costs.begin(), costs.end());
     std::optional<PolynomialGraph> best;
     std::size_t best_cost = 0, which = 0;
-    for (std::size_t i = 0; i < ways_.size(); ++i) {
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
       if (static_cast<double>(costs[i]) > max_cost_ratio * static_cast<double>(least)) continue;
       PolynomialGraph graph = optimised(starts(raw[i]));
       const std::size_t cost = count_operations(graph).cost();
@@ -291,7 +315,7 @@ Program build_program(std::vector<system::EquationSystem>& systems, const Reques
       program.taylor = taylor_series(program.functions.front());
       continue;
     }
-    if (request.optimise && (name == "jac" || name == "jac_p" || name == "jac_u"))
+    if (request.optimise && has_other_ways(name))
       program.functions.push_back(derivatives.cheapest(name));
     else
       add(function_expressions(*chosen.functions, name, request));

@@ -84,6 +84,7 @@ class Conversion {
       case SymbolKind::time: return {Slot::time, 0, false};
       case SymbolKind::parameter: return {Slot::parameter, symbol.index, false};
       case SymbolKind::input: return {Slot::input, symbol.index, false};
+      case SymbolKind::vector: return {Slot::vector, symbol.index, false};
       case SymbolKind::branch: return {Slot::side, symbol.index, false};
       case SymbolKind::contact_mode: return {Slot::contact, 2 * symbol.index + symbol.order, false};
       case SymbolKind::coordinate: {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/internal_functions.hpp"
 
+#include <algorithm>
+
 namespace eomgen::program {
 
 std::vector<abi::Input> inputs_of(const std::string& function) {
@@ -15,6 +17,24 @@ std::vector<abi::Input> inputs_of(const std::string& function) {
 bool takes_inputs(const std::string& function) {
   const abi::Function* found = abi::find(function);
   return found == nullptr || found->has_input(abi::Input::inputs) || !found->has_input(abi::Input::state);
+}
+
+std::size_t vector_size(const std::string& function, const Program& program) {
+  const abi::Function* found = abi::find(function);
+  if (found == nullptr) return 0;
+  switch (abi::vector_entries(*found)) {
+    case abi::VectorEntries::none: return 0;
+    case abi::VectorEntries::states: return program.state_count();
+    case abi::VectorEntries::states_twice: return 2 * program.state_count();
+    case abi::VectorEntries::accelerations: break;
+  }
+  return program.free.size();
+}
+
+std::size_t vector_size(const Program& program) {
+  std::size_t size = 0;
+  for (const Function& function : program.functions) size = std::max(size, vector_size(function.name, program));
+  return size;
 }
 
 bool may_be_null(const std::string& function, std::size_t result) {

@@ -55,6 +55,7 @@ Values<Real> run(const Function& function, const Arguments<Real>& arguments, con
         case Slot::parameter: return arguments.p.at(operand.index);
         case Slot::input: return arguments.u.at(operand.index);
         case Slot::prepared: return arguments.w.at(operand.index);
+        case Slot::vector: return arguments.v.at(operand.index);
         case Slot::side: return operand.index < arguments.side.size() ? arguments.side[operand.index] : Real(0);
         case Slot::contact: return Real(contact_sign(arguments, operand.index));
         case Slot::value: break;
@@ -116,11 +117,12 @@ Values<Real> run(const Function& function, const Arguments<Real>& arguments, con
 
 Values<cln::cl_R> interpret(const Function& function, const Arguments<cln::cl_R>& arguments, int digits) {
   const symbolic::ClnArithmetic number{cln::float_format(static_cast<std::uintptr_t>(digits))};
-  Arguments<cln::cl_R> floats{number.round(arguments.t), {}, {}, {}, {}, arguments.side, arguments.mode};
+  Arguments<cln::cl_R> floats{number.round(arguments.t), {}, {}, {}, {}, arguments.side, arguments.mode, {}};
   for (const auto& [from, to] : {std::pair{&arguments.x, &floats.x},
                                  {&arguments.p, &floats.p},
                                  {&arguments.u, &floats.u},
-                                 {&arguments.w, &floats.w}}) {
+                                 {&arguments.w, &floats.w},
+                                 {&arguments.v, &floats.v}}) {
     for (const cln::cl_R& x : *from) to->push_back(number.round(x));
   }
   return run(function, floats, number);

@@ -19,6 +19,7 @@ struct Arguments {
   std::vector<Real> w{};        // prepared values, from `prepare`
   std::vector<Real> side = {};  // sides of the kinks; empty: branches follow the state
   std::vector<int> mode = {};   // docs/abi.md; only the states of contacts are read; empty: all are 0
+  std::vector<Real> v = {};     // of functions with a vector
 };
 
 /// The sign of a contact that the operand `index` of Slot::contact stands for (eom::contact_sign).

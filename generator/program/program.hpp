@@ -36,8 +36,8 @@ struct Operations {
   }
 };
 
-/// Source of an operand. side (of a kink) and contact (friction) are entries of `mode`.
-enum class Slot : std::uint8_t { constant, pi, time, state, parameter, input, prepared, side, contact, value };
+/// Source of an operand. side (of a kink) and contact (friction) are entries of `mode`; vector is the argument v.
+enum class Slot : std::uint8_t { constant, pi, time, state, parameter, input, prepared, vector, side, contact, value };
 struct Operand {
   Slot slot = Slot::value;
   std::uint32_t index = 0;  // constant: in Function::constants; value: of the instruction

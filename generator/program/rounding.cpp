@@ -149,6 +149,7 @@ class Run {
       case Slot::input: return {arguments_.u.at(operand.index), 0};
       case Slot::prepared:
         return {arguments_.w.at(operand.index), operand.index < w_off_.size() ? w_off_[operand.index] : 0};
+      case Slot::vector: return {arguments_.v.at(operand.index), 0};
       case Slot::side: return {operand.index < arguments_.side.size() ? arguments_.side[operand.index] : 0, 0};
       case Slot::contact: return {static_cast<double>(contact_sign(arguments_, operand.index)), 0};
       case Slot::value: break;

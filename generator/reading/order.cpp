@@ -22,6 +22,7 @@ constexpr int rank_of(SymbolKind kind, int order) {
     case SymbolKind::integral: return 4;
     case SymbolKind::state: return coordinates;
     case SymbolKind::time: return 5;
+    case SymbolKind::vector:
     case SymbolKind::branch:
     case SymbolKind::auxiliary: return 5;
     case SymbolKind::coordinate: return order == 0 ? coordinates : order == 1 ? rates + 1 : accelerations + 1;
@@ -30,7 +31,7 @@ constexpr int rank_of(SymbolKind kind, int order) {
 }
 
 // Orders from 2 on are accelerations.
-constexpr std::size_t kinds = static_cast<std::size_t>(SymbolKind::state) + 1, orders = 3;
+constexpr std::size_t kinds = static_cast<std::size_t>(SymbolKind::vector) + 1, orders = 3;
 constexpr auto symbol_ranks = [] {
   std::array<std::array<int, orders>, kinds> ranks{};
   for (std::size_t kind = 0; kind < kinds; ++kind) {

@@ -46,6 +46,7 @@ class Text {
       case Slot::parameter: return model_.parameters[operand.index].name;
       case Slot::input: return model_.inputs[operand.index].name;
       case Slot::prepared: return fmt::format("w[{}]", operand.index);
+      case Slot::vector: return fmt::format("v[{}]", operand.index);
       case Slot::side: return fmt::format("side[{}]", operand.index);
       case Slot::contact: return fmt::format("mode[{}]", operand.index);
       case Slot::value: break;

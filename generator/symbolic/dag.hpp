@@ -55,6 +55,7 @@ enum class SymbolKind : std::uint8_t {
   integral,      // of a function of time, from the start of the run, in Model::states; set_rate defines its derivative
   branch,        // branch at which a kink is held: -1 or 1, or 0 for none (program/kinks.hpp)
   state,         // of first order, in Model::states; set_rate defines its derivative
+  vector,        // an entry of the argument v of an emitted function (program/abi_functions.hpp)
 };
 
 struct Symbol {

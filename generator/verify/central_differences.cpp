@@ -14,7 +14,7 @@ Real power_of_ten(int exponent) { return cln::expt(cln::cl_RA(10), cln::cl_I(exp
 AbiArguments with_digits(const AbiArguments& at, const Precision& precision) {
   AbiArguments result = at;
   result.t = precision.round(at.t);
-  for (auto* part : {&result.x, &result.p, &result.u})
+  for (auto* part : {&result.x, &result.p, &result.u, &result.v})
     for (Real& value : *part) value = precision.round(value);
   return result;
 }

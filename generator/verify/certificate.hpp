@@ -44,6 +44,7 @@ struct AbiArguments {
   std::vector<Real> x, p, u;
   std::vector<int> mode = {};  // states of the contacts; empty: all are 0
   int order = 0;
+  std::vector<Real> v = {};  // of functions with a vector
 };
 /// The arrays that a function of the C ABI writes.
 using AbiResults = std::vector<std::vector<Real>>;

@@ -15,6 +15,7 @@
 #include "system/contact_set.hpp"
 #include "verify/applied_forces.hpp"
 #include "verify/central_differences.hpp"
+#include "verify/derivative_comparisons.hpp"
 
 namespace eomgen::verify {
 namespace {
@@ -43,7 +44,8 @@ class FunctionComparisons {
       if (!values) continue;
       sizes_ = sizes(function, *values);
       if (sizes_.empty()) continue;  // too close to another branch
-      (this->*check_of(function))(*values);
+      if (!compare_derivative({program_, s_, oracle_, lookup_, at_, function, *values, sizes_, tally_}))
+        (this->*check_of(function))(*values);
     }
   }
 
@@ -54,9 +56,6 @@ class FunctionComparisons {
   static CheckFunction check_of(const std::string& function) {
     static const std::map<std::string_view, CheckFunction> statements{
         {"rhs_prepared", &FunctionComparisons::prepared},
-        {"jac", &FunctionComparisons::jacobian},
-        {"jac_p", &FunctionComparisons::parameters},
-        {"jac_u", &FunctionComparisons::inputs},
         {"mass", &FunctionComparisons::mass},
         {"momenta", &FunctionComparisons::momenta},
         {"constraints", &FunctionComparisons::constraints},
@@ -80,18 +79,7 @@ class FunctionComparisons {
   }
 
   AbiResults sizes(const std::string& function, const AbiResults& values) const {
-    constexpr double least_number = 1e-290;  // bounds are binary64, and smaller numbers have fewer digits there
-    const std::vector<std::vector<double>> bounds = program_.bounds(function, at_);
-    AbiResults result;
-    for (std::size_t r = 0; r < values.size(); ++r) {
-      result.emplace_back();
-      for (std::size_t i = 0; i < values[r].size(); ++i) {
-        if (!std::isfinite(bounds[r][i])) return {};
-        result.back().push_back(cln::abs(values[r][i]) +
-                                rounding_scale(std::max(bounds[r][i], least_number), oracle_.precision()));
-      }
-    }
-    return result;
+    return value_sizes(program_, function, at_, values, oracle_);
   }
 
   void note(const std::string& function, const std::string& against, double difference) {
@@ -167,51 +155,6 @@ class FunctionComparisons {
     for (std::size_t i = 0; i < values[0].size(); ++i)
       largest = std::max(largest, relative_difference(values[0][i] - (*rhs)[0][i], sizes_[0][i] + own[0][i]));
     note("rhs_prepared", "its rhs", largest);
-  }
-
-  /// Compares the columns of array `r`, times the components of a direction, with the central difference along it.
-  void along(const std::string& function, const AbiResults& values, std::size_t r, const std::vector<Real>& direction,
-             const std::optional<CentralDifference>& slope) {
-    const std::vector<Real> lost = noise("rhs");
-    if (!slope || lost.empty()) return;
-    const std::size_t rows = lost.size();
-    double largest = 0;
-    for (std::size_t i = 0; i < rows; ++i) {
-      Real sum = 0, size = lost[i] + slope->errors[0][i];
-      for (std::size_t j = 0; j < direction.size(); ++j) {
-        sum = sum + values[r][i + rows * j] * direction[j];
-        size = size + sizes_[r][i + rows * j] * cln::abs(direction[j]);
-      }
-      largest = std::max(largest, relative_difference(sum - slope->values[0][i], size));
-    }
-    note(function, "differences of dx", largest);
-  }
-
-  void jacobian(const AbiResults& values) {
-    std::vector<Real> direction;
-    for (std::size_t j = 0; j < at_.x.size(); ++j) direction.push_back(direction_component(j));
-    along("jac", values, 0, direction, slope("rhs", [&](AbiArguments& at, const Real& h) {
-            for (std::size_t j = 0; j < direction.size(); ++j) at.x[j] = at.x[j] + h * direction[j];
-          }));
-    along("df/dt", values, 1, {Real(1)}, slope("rhs", [](AbiArguments& at, const Real& h) { at.t = at.t + h; }));
-  }
-
-  void parameters(const AbiResults& values) {
-    std::vector<Real> direction;
-    for (std::size_t j = 0; j < at_.p.size(); ++j)
-      direction.push_back(cln::zerop(at_.p[j]) ? direction_component(j)
-                                               : direction_component(j) * cln::rational(at_.p[j]));
-    along("jac_p", values, 0, direction, slope("rhs", [&](AbiArguments& at, const Real& h) {
-            for (std::size_t j = 0; j < direction.size(); ++j) at.p[j] = at.p[j] + h * direction[j];
-          }));
-  }
-
-  void inputs(const AbiResults& values) {
-    std::vector<Real> direction;
-    for (std::size_t j = 0; j < at_.u.size(); ++j) direction.push_back(direction_component(j));
-    along("jac_u", values, 0, direction, slope("rhs", [&](AbiArguments& at, const Real& h) {
-            for (std::size_t j = 0; j < direction.size(); ++j) at.u[j] = at.u[j] + h * direction[j];
-          }));
   }
 
   /// Symbol values without friction and with inputs at their defaults, as in the functions without a mode.
@@ -462,6 +405,8 @@ AbiArguments arguments_at(const EquationSystem& s, const State& state, const std
   for (const std::uint32_t i : s.free) at.x.push_back(state.q[i]);
   for (const std::uint32_t i : s.free) at.x.push_back(state.qdot[i]);
   for (const system::FirstOrderState& z : s.states) at.x.push_back(state.z[z.symbol.index]);
+  // The longest vector of a function: two entries per state.
+  for (std::size_t j = 0; j < 2 * at.x.size(); ++j) at.v.push_back(direction_component(j));
   return at;
 }
 

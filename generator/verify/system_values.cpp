@@ -248,6 +248,7 @@ Real SymbolValues::operator()(const symbolic::Symbol& symbol) const {
       return inputs.empty() ? state.phi.at(symbol.index) : state.inputs.at(inputs.at(symbol.index));
     }
     case SymbolKind::contact_mode: return eom::contact_sign(state.mode, symbol.index, symbol.order);
+    case SymbolKind::vector:
     case SymbolKind::auxiliary: break;
   }
   throw std::logic_error("verify: a symbol without a value");

@@ -137,6 +137,57 @@ class CompiledModel:
     def jac_u(
         self, t: ArrayLike, x: ArrayLike, inputs: Inputs = None, parameters: Optional[ArrayLike] = None, mode: Mode = None
     ) -> Array: ...
+    def jvp(
+        self,
+        t: ArrayLike,
+        x: ArrayLike,
+        v: ArrayLike,
+        inputs: Inputs = None,
+        parameters: Optional[ArrayLike] = None,
+        mode: Mode = None,
+    ) -> Array: ...
+    def vjp(
+        self,
+        t: ArrayLike,
+        x: ArrayLike,
+        v: ArrayLike,
+        inputs: Inputs = None,
+        parameters: Optional[ArrayLike] = None,
+        mode: Mode = None,
+    ) -> Array: ...
+    def adjoint(
+        self,
+        t: ArrayLike,
+        x: ArrayLike,
+        v: ArrayLike,
+        inputs: Inputs = None,
+        parameters: Optional[ArrayLike] = None,
+        mode: Mode = None,
+    ) -> Tuple[Array, Array, Array]: ...
+    def hvp(
+        self,
+        t: ArrayLike,
+        x: ArrayLike,
+        v: ArrayLike,
+        inputs: Inputs = None,
+        parameters: Optional[ArrayLike] = None,
+        mode: Mode = None,
+    ) -> Array: ...
+    def inverse(
+        self,
+        t: ArrayLike,
+        x: ArrayLike,
+        v: ArrayLike,
+        inputs: Inputs = None,
+        parameters: Optional[ArrayLike] = None,
+        mode: Mode = None,
+    ) -> Array: ...
+    def coriolis(
+        self, t: ArrayLike, x: ArrayLike, inputs: Inputs = None, parameters: Optional[ArrayLike] = None, mode: Mode = None
+    ) -> Array: ...
+    def gravity(
+        self, t: ArrayLike, x: ArrayLike, inputs: Inputs = None, parameters: Optional[ArrayLike] = None, mode: Mode = None
+    ) -> Array: ...
     def mass(
         self, t: ArrayLike, x: ArrayLike, inputs: Inputs = None, parameters: Optional[ArrayLike] = None, mode: Mode = None
     ) -> Tuple[Array, Array]: ...

@@ -12,11 +12,23 @@ namespace {
 
 using Arguments = CompiledModel::Arguments;
 
-enum class Size { none, states, coordinates, parameters, inputs, constraints, reactions, outputs, events };
+enum class Size {
+  none,
+  states,
+  states_twice,
+  coordinates,
+  parameters,
+  inputs,
+  constraints,
+  reactions,
+  outputs,
+  events
+};
 
 std::size_t value_of(Size size, const CompiledModel& model) {
   switch (size) {
     case Size::states: return model.states().size();
+    case Size::states_twice: return 2 * model.states().size();
     case Size::coordinates: return model.coordinate_count();
     case Size::parameters: return model.parameters().size();
     case Size::inputs: return model.inputs().size();
@@ -43,6 +55,7 @@ struct Function {
   std::size_t count;  // of results
   std::array<ResultShape, most_results> results;
   int (*evaluate)(const CompiledModel& model, const Arguments& at, double* const* results);
+  Size vector = Size::none;  // length of the argument v, if the function takes it
 };
 
 int jac_t(const CompiledModel& model, const Arguments& at, double* const* results) {
@@ -51,6 +64,7 @@ int jac_t(const CompiledModel& model, const Arguments& at, double* const* result
   return model.jac(at, dfdx.data(), results[0]);
 }
 
+#define EOMGEN_VECTOR_ARGUMENTS "(t, x, v, inputs=None, parameters=None, mode=None)\n--\n\n"
 #define EOMGEN_ARGUMENTS "(t, x, inputs=None, parameters=None, mode=None)\n--\n\n"
 
 constexpr std::array functions{
@@ -89,6 +103,63 @@ constexpr std::array functions{
              1,
              {{{Size::states, Size::inputs}}},
              [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.jac_u(at, r[0]); }},
+    Function{"jvp",
+             "jvp",
+             "jvp" EOMGEN_VECTOR_ARGUMENTS "jac(t, x) v without the matrix: (N,), or (K, N).\n\n"
+             "v: (N,), or (K, N). Other arguments as of rhs.",
+             1,
+             {{{Size::states}}},
+             [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.jvp(at, r[0]); },
+             Size::states},
+    Function{"vjp",
+             "vjp",
+             "vjp" EOMGEN_VECTOR_ARGUMENTS "v^T jac(t, x) without the matrix: (N,), or (K, N).\n\n"
+             "v: (N,), or (K, N). Other arguments as of rhs.",
+             1,
+             {{{Size::states}}},
+             [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.vjp(at, r[0]); },
+             Size::states},
+    Function{
+        "adjoint",
+        "adjoint",
+        "adjoint" EOMGEN_VECTOR_ARGUMENTS
+        "(v^T jac, v^T jac_p, v^T jac_u) at once: (N,), (P,), (U,), or with K in front.\n\n"
+        "v: (N,), or (K, N). Other arguments as of rhs.",
+        3,
+        {{{Size::states}, {Size::parameters}, {Size::inputs}}},
+        [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.adjoint(at, r[0], r[1], r[2]); },
+        Size::states},
+    Function{"hvp",
+             "hvp",
+             "hvp" EOMGEN_VECTOR_ARGUMENTS "d^2(c^T dx/dt)/dx^2 d: (N,), or (K, N).\n\n"
+             "v: c, then d: (2 N,), or (K, 2 N). Other arguments as of rhs.",
+             1,
+             {{{Size::states}}},
+             [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.hvp(at, r[0]); },
+             Size::states_twice},
+    Function{"inverse",
+             "inverse",
+             "inverse" EOMGEN_VECTOR_ARGUMENTS
+             "Inverse dynamics: M v + h, the forces that the accelerations v need besides those of the model and its\n"
+             "inputs, without reactions: (n,), or (K, n).\n\nv: (n,), or (K, n). Other arguments as of rhs.",
+             1,
+             {{{Size::coordinates}}},
+             [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.inverse(at, r[0]); },
+             Size::coordinates},
+    Function{"coriolis",
+             "coriolis",
+             "coriolis" EOMGEN_ARGUMENTS
+             "C of C qdot by Christoffel symbols of M, so that dM/dt - 2 C is skew: (n, n), or (K, n, n).\n"
+             "Arguments as of rhs.",
+             1,
+             {{{Size::coordinates, Size::coordinates}}},
+             [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.coriolis(at, r[0]); }},
+    Function{"gravity",
+             "gravity",
+             "gravity" EOMGEN_ARGUMENTS "dU/dq of the potential energy: (n,), or (K, n). Arguments as of rhs.",
+             1,
+             {{{Size::coordinates}}},
+             [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.gravity(at, r[0]); }},
     Function{
         "mass",
         "mass",
@@ -141,6 +212,7 @@ constexpr std::array functions{
              [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.events(at, r[0]); }},
 };
 
+#undef EOMGEN_VECTOR_ARGUMENTS
 #undef EOMGEN_ARGUMENTS
 
 const char* meaning_of(int code) {
@@ -216,8 +288,8 @@ struct Call {
   const Function& function;
   bool many;
   std::size_t count;
-  const double *t, *x, *inputs, *parameters;
-  std::size_t t_step, input_step, parameter_step;
+  const double *t, *x, *inputs, *parameters, *v;
+  std::size_t t_step, input_step, parameter_step, v_step;
   std::vector<int> mode;
   std::array<double*, most_results> results;
   std::array<std::size_t, most_results> sizes;
@@ -234,6 +306,7 @@ int Call::evaluate() const {
   for (std::size_t k = 0; k < count; ++k) {
     Arguments at{t[k * t_step], x + k * N, parameters == nullptr ? nullptr : parameters + k * parameter_step,
                  inputs == nullptr ? nullptr : inputs + k * input_step};
+    if (v != nullptr) at.v = v + k * v_step;
     set_mode(at, mode);
     const int code = function.evaluate(model, at, to.data());
     if (code == CompiledModel::not_compiled) return code;
@@ -263,11 +336,21 @@ PyObject* call(const Function& f, PyObject* self, PyObject* const* arguments, Py
                PyObject* keywords) {
   const CompiledModel& model = object_of<CompiledModel>(self);
   static constexpr std::array names{"t", "x", "inputs", "parameters", "mode"};
-  const auto given = take_arguments<5>(f.name, names, 2, arguments, positional, keywords);
+  static constexpr std::array names_with_v{"t", "x", "v", "inputs", "parameters", "mode"};
+  std::array<PyObject*, 5> given{};
+  PyObject* vector = nullptr;
+  if (f.vector == Size::none) {
+    given = take_arguments<5>(f.name, names, 2, arguments, positional, keywords);
+  } else {
+    const auto all = take_arguments<6>(f.name, names_with_v, 3, arguments, positional, keywords);
+    vector = all[2];
+    given = {all[0], all[1], all[3], all[4], all[5]};
+  }
+  const Numbers v(vector, "v");
   const Numbers t(given[0], "t"), x(given[1], "x"), parameters(given[3], "parameters");
   py::object returned;
   if (given[2] != nullptr && PyCallable_Check(given[2]) != 0)
-    returned = py::handle(given[2])(py::handle(arguments[0]), py::handle(given[1]));
+    returned = py::handle(given[2])(py::handle(given[0]), py::handle(given[1]));
   const Numbers inputs(returned ? returned.ptr() : given[2], "inputs");
   const std::size_t N = model.states().size();
   const bool many = x.dimensions() == 2;
@@ -284,9 +367,11 @@ PyObject* call(const Function& f, PyObject* self, PyObject* const* arguments, Py
                   x.data(),
                   inputs.data(),
                   parameters.data(),
+                  v.data(),
                   t.dimensions() == 1 ? std::size_t{1} : 0,
                   step_of("inputs", inputs, model.inputs().size(), count, many),
                   step_of("parameters", parameters, model.parameters().size(), count, many),
+                  f.vector == Size::none ? 0 : step_of("v", v, value_of(f.vector, model), count, many),
                   modes_of(given[4], model),
                   {},
                   {}};

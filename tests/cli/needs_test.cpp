@@ -79,6 +79,13 @@ TEST_CASE("needs: a requested function adds its symbol and does not change the r
                                         {{"--with", "jac"}, "jac"},
                                         {{"--with", "jac_p"}, "jac_p"},
                                         {{"--with", "jac_u"}, "jac_u"},
+                                        {{"--with", "jvp"}, "jvp"},
+                                        {{"--with", "vjp"}, "vjp"},
+                                        {{"--with", "adjoint"}, "adjoint"},
+                                        {{"--with", "hvp"}, "hvp"},
+                                        {{"--with", "inverse"}, "inverse"},
+                                        {{"--with", "coriolis"}, "coriolis"},
+                                        {{"--with", "gravity"}, "gravity"},
                                         {{"--with", "mass"}, "mass"},
                                         {{"--with", "constraints"}, "constraints"},
                                         {{"--output", "energy"}, "outputs"}}) {

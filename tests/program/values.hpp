@@ -37,6 +37,7 @@ program::Arguments<Real> arguments_at(const system::EquationSystem& system, std:
   for (std::uint32_t i = 0; i < enough; ++i) {
     arguments.p.push_back(number(value_at({symbolic::SymbolKind::parameter, i, 0}, point)));
     arguments.u.push_back(number(value_at({symbolic::SymbolKind::input, i, 0}, point)));
+    arguments.v.push_back(number(value_at({symbolic::SymbolKind::vector, i, 0}, point)));
   }
   return arguments;
 }

@@ -17,6 +17,7 @@
 #include "emit/signature.hpp"
 #include "emit/text.hpp"
 #include "error.hpp"
+#include "program/internal_functions.hpp"
 #include "program/taylor.hpp"
 #include "skeletons/batch_model_batch_c.hpp"
 #include "skeletons/batch_model_batch_h.hpp"
@@ -36,11 +37,9 @@ struct Array {
   const char* name;  // of the argument; `own`: flag for one array per state
   const char* own;
 };
-constexpr Array arrays[] = {{Slot::time, "t", "own_time"},
-                            {Slot::state, "x", nullptr},
-                            {Slot::parameter, "p", "own_parameters"},
-                            {Slot::prepared, "w", "own_prepared"},
-                            {Slot::input, "u", "own_inputs"}};
+constexpr Array arrays[] = {
+    {Slot::time, "t", "own_time"},         {Slot::state, "x", nullptr},      {Slot::parameter, "p", "own_parameters"},
+    {Slot::prepared, "w", "own_prepared"}, {Slot::input, "u", "own_inputs"}, {Slot::vector, "v", nullptr}};
 
 class File {
  public:
@@ -52,7 +51,8 @@ class File {
         names_(model_names(program, context)) {
     dialect_ = lane_dialect(single(), prefix_);
     NameTable table;
-    for (const auto* list : {&names_.state, &names_.contacts, &names_.parameters, &names_.inputs, &names_.sides}) {
+    for (const auto* list :
+         {&names_.state, &names_.contacts, &names_.parameters, &names_.inputs, &names_.sides, &names_.vector}) {
       for (const std::string& name : *list) table.declare(name);
     }
     for (std::size_t i = 0; i < program.prepared_count(); ++i)
@@ -77,6 +77,7 @@ class File {
         {"parameters", room(Slot::parameter)},
         {"prepared", room(Slot::prepared)},
         {"inputs", room(Slot::input)},
+        {"vector", room(Slot::vector)},
         {"default_inputs", default_inputs()},
         {"start_time", dialect_.value(context_.start_time)},
         {"order", program_.taylor ? name_ + "_taylor_order" : "0"},
@@ -89,8 +90,11 @@ class File {
 
  private:
   bool single() const { return context_.single_error.has_value(); }
-  std::size_t entries(const Array& array) const {
+  /// Entries of one state. Without a function, v has those of the longest one.
+  std::size_t entries(const Array& array, const std::string& function = {}) const {
     switch (array.slot) {
+      case Slot::vector:
+        return function.empty() ? program::vector_size(program_) : program::vector_size(function, program_);
       case Slot::time: return 1;
       case Slot::state: return program_.state_count();
       case Slot::parameter: return context_.parameters.size();
@@ -121,7 +125,7 @@ class File {
       if (!result.is_test()) results.emplace_back(result.name, result.entries.size());
     }
     const std::vector<Argument> list = abi_arguments(function.name);
-    if (!fits(list, results)) return;
+    if (!fits(function.name, list, results)) return;
     add(function.name, list, results,
         block_function(function.name, print_function(function, names_, context_, dialect_)));
   }
@@ -129,7 +133,7 @@ class File {
     const std::vector<Argument> list = abi_arguments("taylor");
     const std::vector<std::pair<std::string, std::size_t>> results{
         {list.back().name, program_.state_count() * (program::taylor_order(*program_.taylor) + 1)}};
-    if (!fits(list, results) || !taylor_fits_lanes(*program_.taylor, program_.state_count())) return;
+    if (!fits("taylor", list, results) || !taylor_fits_lanes(*program_.taylor, program_.state_count())) return;
     for (const char* name : {"taylor_sums", "taylor_block"}) name_for_width(name);
     add("taylor", list, results,
         taylor_block(program_, names_, context_, dialect_,
@@ -147,9 +151,10 @@ class File {
                         {"check_name", fmt::format("{}{}_agrees", prefix_, function)},
                         {"check", check(function, list, results)}});
   }
-  bool fits(const std::vector<Argument>& list, const std::vector<std::pair<std::string, std::size_t>>& results) const {
+  bool fits(const std::string& function, const std::vector<Argument>& list,
+            const std::vector<std::pair<std::string, std::size_t>>& results) const {
     std::size_t numbers = 0;
-    for (const Array& array : arrays) numbers += takes(list, array.slot) ? entries(array) : 0;
+    for (const Array& array : arrays) numbers += takes(list, array.slot) ? entries(array, function) : 0;
     for (const auto& [name, size] : results) numbers += size;
     return numbers <= max_numbers;
   }
@@ -252,7 +257,7 @@ class File {
       const Array& array = arrays[k];
       if (!takes(list, array.slot)) continue;
       const bool input = array.slot == Slot::input;
-      const std::size_t count = size(entries(array));
+      const std::size_t count = size(entries(array, function));
       if (input && !inputs) {
         fill += "  (void)u;\n";
         continue;
@@ -310,7 +315,7 @@ class File {
   std::string check(const std::string& function, const std::vector<Argument>& list,
                     const std::vector<std::pair<std::string, std::size_t>>& results) const {
     std::string declared, unset, batch, sizes, handed, size = fmt::format("1 + {}", room(Slot::state));
-    for (const Slot slot : {Slot::parameter, Slot::prepared, Slot::input}) size += " + " + room(slot);
+    for (const Slot slot : {Slot::parameter, Slot::prepared, Slot::input, Slot::vector}) size += " + " + room(slot);
     for (std::size_t r = 0; r < 3; ++r) {
       const std::size_t count = r < results.size() ? results[r].second : 0;
       batch += fmt::format("{}{}", r == 0 ? "" : ", ", r < results.size() ? fmt::format("y{}", r + 1) : "0");

@@ -18,6 +18,7 @@
 #include "emit/text.hpp"
 #include "emit/uses.hpp"
 #include "error.hpp"
+#include "program/internal_functions.hpp"
 #include "skeletons/javascript_model_js.hpp"
 
 namespace eomgen::emit {
@@ -125,6 +126,7 @@ std::string vectors(const program::Program& program, const EmissionContext& cont
     mode.resize(program.mode_layout().size());
     tests.push_back(
         {{"t", test.t}, {"mode", mode}, {"x", test.x}, {"p", test.p}, {"u", test.u}, {"functions", functions}});
+    if (!test.v.empty()) tests.back()["v"] = test.v;
   }
   std::string text = "[";
   for (std::size_t i = 0; i < tests.size(); ++i) text += (i > 0 ? ",\n  " : "\n  ") + literal(tests[i]);
@@ -159,6 +161,19 @@ std::string without_inputs() {
     condition += fmt::format("{}name === \"{}\"", condition.empty() ? "" : " || ", function.name);
   }
   return condition;
+}
+
+/// The case of functions with the argument v in the self test; empty if there are none.
+std::string with_vector(const program::Program& program) {
+  std::string condition;
+  for (const program::Function& function : program.functions) {
+    if (program::vector_size(function.name, program) == 0) continue;
+    condition += fmt::format("{}name === \"{}\"", condition.empty() ? "" : " || ", function.name);
+  }
+  if (condition.empty()) return "";
+  return fmt::format(
+      " else if ({}) {{\n        code = functions[name](at.t, at.x, at.p, u, at.mode, at.v, ...got);\n      }}",
+      condition);
 }
 
 }  // namespace
@@ -201,6 +216,7 @@ std::vector<EmittedFile> emit_javascript(const program::Program& program, const 
       {"rounding", dialect.rounding_function.empty() ? "" : ", " + dialect.rounding_function},
       {"prepared", std::to_string(program.prepared_count())},
       {"without_inputs", without_inputs()},
+      {"with_vector", with_vector(program)},
       {"defaults_test", defaults_test(program, context, dialect)},
       {"vectors", vectors(program, context)}};
   return {{name + ".js", render_template(skeleton::javascript_model_js, values, functions)}};

@@ -203,6 +203,7 @@ std::string julia_selftest(const program::Program& program, const EmissionContex
                         single_precision ? julia_single_number(test.t) : julia_number(test.t),
                         julia_vector(test.x, single_precision), julia_vector(test.p, single_precision),
                         julia_vector(test.u, single_precision), julia_modes(test.mode, program.mode_layout().size()));
+    if (!test.v.empty()) text += fmt::format("  v = {}\n", julia_vector(test.v, single_precision));
     for (const FunctionValues& f : test.functions) text += julia_comparison(f, k + 1, program.prepared_count());
   }
   return text;

@@ -51,7 +51,8 @@ class StatementPrinter {
 
   void declare_names() {
     for (const std::string_view word : language_.reserved) table_.declare(std::string(word));
-    for (const auto* list : {&names_.sides, &names_.contacts, &names_.state, &names_.parameters, &names_.inputs}) {
+    for (const auto* list :
+         {&names_.sides, &names_.contacts, &names_.state, &names_.parameters, &names_.inputs, &names_.vector}) {
       for (const std::string& name : *list) table_.declare(name);
     }
     for (const std::string& name : {names_.time, names_.x, names_.p, names_.w, names_.u, names_.mode})
@@ -194,6 +195,7 @@ class StatementPrinter {
         return program::takes_inputs(function_.name)
                    ? converted(element(names_.u, index))
                    : converted(language_.dialect.value(context_.inputs.at(index).value));
+      case Slot::vector: return converted(element(names_.v, index));
       case Slot::contact:
         return fmt::format("{}({})", index % 2 == 1 ? "normal_sign" : "slides", element(names_.mode, index / 2));
       case Slot::side: return fmt::format("side({})", element(names_.mode, names_.first_kink + index));

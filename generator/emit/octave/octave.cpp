@@ -187,6 +187,7 @@ std::string octave_long_text(const std::string& text) {
 std::size_t octave_rows(const std::string& function, std::size_t result, const program::Program& program) {
   if (function == "jac" && result == 0) return program.state_count();
   if (function == "jac_p" || function == "jac_u") return program.state_count();
+  if (function == "coriolis") return program.free.size();
   if (function == "mass" && result == 0) return program.free.size();
   if (function == "constraints" && result == 1) return program.active_constraints;
   return 0;
@@ -261,6 +262,7 @@ std::string octave_selftest(const program::Program& program, const EmissionConte
     mode.resize(program.mode_layout().size());
     text += fmt::format("  t = {}; x = {}; p = {}; u = {}; mode = {};\n", octave_number(test.t), octave_column(test.x),
                         octave_column(test.p), octave_column(test.u), octave_column(mode));
+    if (!test.v.empty()) text += fmt::format("  v = {};\n", octave_column(test.v));
     for (const FunctionValues& f : test.functions) text += octave_comparison(f, k + 1);
   }
   return text;

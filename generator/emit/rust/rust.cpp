@@ -149,6 +149,15 @@ Language rust_language(bool single) {
   return language;
 }
 
+/// The type of the argument v.
+std::string rust_vector_type(const std::string& function, const ModelNames& names) {
+  const abi::Function* entry = abi::find(function);
+  if (entry != nullptr && abi::vector_entries(*entry) == abi::VectorEntries::accelerations)
+    return fmt::format("&[Real; {}]", names.acceleration.size());
+  const bool twice = entry != nullptr && abi::vector_entries(*entry) == abi::VectorEntries::states_twice;
+  return twice ? "&[Real; 2 * STATES]" : "&[Real; STATES]";
+}
+
 /// "x: &[Real; STATES], ..": with the sizes of the arrays.
 std::string rust_parameters(const program::Function& function, const FunctionText& text, const ModelNames& names,
                             bool results) {
@@ -164,6 +173,7 @@ std::string rust_parameters(const program::Function& function, const FunctionTex
         type = argument.slot == program::Slot::input       ? "Option<&[Real; INPUTS]>"
                : argument.slot == program::Slot::parameter ? "&[Real; PARAMETERS]"
                : argument.slot == program::Slot::prepared  ? "&[Real; PREPARED_SIZE]"
+               : argument.slot == program::Slot::vector    ? rust_vector_type(function.name, names)
                                                            : "&[Real; STATES]";
         break;
       case Argument::Kind::result: {
@@ -279,7 +289,8 @@ std::string rust_vectors(const program::Program& program, const EmissionContext&
 }
 
 /// The comparison of one function at one state, of number `k`.
-std::string rust_comparison(const FunctionValues& f, std::size_t k, const Dialect& dialect) {
+std::string rust_comparison(const FunctionValues& f, const std::vector<double>& v, std::size_t k,
+                            const Dialect& dialect) {
   std::string text = "  {\n", call;
   const bool prepared = abi::find(f.function)->has_input(abi::Input::prepared);
   for (const abi::Input input : abi::find(f.function)->inputs) {
@@ -291,6 +302,7 @@ std::string rust_comparison(const FunctionValues& f, std::size_t k, const Dialec
       case abi::Input::prepared: call += "&w"; break;
       case abi::Input::inputs: call += "Some(&v.u)"; break;
       case abi::Input::mode: call += "Some(&v.mode)"; break;
+      case abi::Input::vector: call += fmt::format("&{}", rust_list(v, dialect)); break;
       default: break;
     }
   }
@@ -310,7 +322,8 @@ std::string rust_comparison(const FunctionValues& f, std::size_t k, const Dialec
   return text + fmt::format("    if {}({}) != 0 {{ return {}; }}\n{}  }}\n", f.function, call, k + 1, comparisons);
 }
 
-std::string rust_selftest(const EmissionContext& context, const Dialect& dialect, bool single) {
+std::string rust_selftest(const program::Program& program, const EmissionContext& context, const Dialect& dialect,
+                          bool single) {
   std::string text;
   if (begins_with_defaults(context, single))
     text +=
@@ -325,7 +338,11 @@ std::string rust_selftest(const EmissionContext& context, const Dialect& dialect
         "  if p.iter().zip(&p0).any(|(a, b)| !(abs(a - b) <= {0}*abs(*b) + {0})) {{ return 1; }}\n",
         single ? "1e-3" : "1e-7");
   for (std::size_t k = 0; k < context.tests.size(); ++k) {
-    for (const FunctionValues& f : context.tests[k].functions) text += rust_comparison(f, k, dialect);
+    for (const FunctionValues& f : context.tests[k].functions) {
+      const std::vector<double>& all = context.tests[k].v;
+      const auto size = static_cast<std::ptrdiff_t>(program::vector_size(f.function, program));
+      text += rust_comparison(f, {all.begin(), all.begin() + size}, k, dialect);
+    }
   }
   return text;
 }
@@ -367,7 +384,7 @@ std::vector<EmittedFile> emit_rust(const program::Program& program, const Emissi
       {"start", start},
       {"count", std::to_string(context.tests.size())},
       {"vectors", rust_vectors(program, context, language.dialect)},
-      {"selftest", rust_selftest(context, language.dialect, single)}};
+      {"selftest", rust_selftest(program, context, language.dialect, single)}};
   return {{rust_name(context.id) + ".rs", render_template(skeleton::rust_model_rs, values, functions)}};
 }
 
