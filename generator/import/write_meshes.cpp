@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "import/mesh.hpp"
 #include "import/model_text.hpp"
-#include "model/csv_file.hpp"
+#include "model/data_file.hpp"
 
 namespace eomgen::import {
 namespace {
@@ -41,12 +40,9 @@ std::string bytes_of(const std::string& folder, const std::string& name) {
   std::string why = "no file of this name is in the folder of the robot file";
   for (const std::string& path : candidates(name)) {
     try {
-      return model::read_data_file(folder, path, max_mesh_bytes, [&](const std::string& what, const std::string&) {
-        if (what.find("there is no file") == std::string::npos) why = what;
-        throw NotDrawn{why};
-      });
-    } catch (const NotDrawn&) {
-      continue;
+      return model::read_data_file(folder, path, max_mesh_bytes);
+    } catch (const model::DataFileError& error) {
+      if (error.problem() != model::DataFileProblem::missing) why = error.message();
     }
   }
   throw NotDrawn{why};
