@@ -3,9 +3,10 @@
 """Imports every URDF file of a folder and prints a table: coordinates, operations, time, agreement.
 
     bench/robots.py PROGRAM FOLDER [--floating]
-    bench/robots.py PROGRAM FOLDER --beside
+    bench/robots.py PROGRAM FOLDER --beside [--write]
 
-The second form prints forward dynamics of URDF and MJCF files beside other programs (bench/robots_beside.py).
+The second form prints forward dynamics of URDF and MJCF files beside other programs (bench/robots_beside.py). With --write
+the table in docs/benchmarks.md is replaced.
 `differs` is the largest difference of the emitted accelerations from a Newton-Euler recursion on the XML tree, which is
 part of this file and shares nothing with the generator, relative to the largest acceleration of each state.
 """
@@ -253,10 +254,11 @@ def main():
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--floating", action="store_true")
     parser.add_argument("--beside", action="store_true", help="beside other programs for rigid bodies")
+    parser.add_argument("--write", action="store_true", help="with --beside: into docs/benchmarks.md")
     options = parser.parse_args()
     if options.beside:
         import robots_beside
-        return robots_beside.table(options.program, options.folder)
+        return robots_beside.table(options.program, options.folder, options.write)
     print("| robot | links | coordinates | formulation | operations | ns | differs | emit s | run s | outcome |")
     print("|---|---|---|---|---|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as scratch:

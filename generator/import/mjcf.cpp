@@ -234,7 +234,7 @@ class MjcfReader {
     if (joint.type != JointType::floating && joint.type != JointType::ball)
       reference = read_coordinate(at, joint);
     else
-      report_several(at);
+      read_several(at, joint);
     const std::size_t index = add(std::move(joint), {link, body.where, {}, {}});
     references_.back() = reference;
     Pose back;
@@ -253,13 +253,26 @@ class MjcfReader {
          model::suggest_choice(type->value, {"hinge", "slide", "ball", "free"}));
   }
 
-  void report_several(const MjcfElement& at) {
-    for (const char* name : {"damping", "armature", "frictionloss", "stiffness"})
+  /// Passive forces of a ball or free joint, which are the same along all of its axes.
+  void read_several(const MjcfElement& at, Joint& joint) {
+    for (const auto& [name, value] : {std::pair{"damping", &joint.damping}, std::pair{"armature", &joint.armature}})
+      read_passive(at, name, *value, joint);
+    for (const auto& [name, why] :
+         {std::pair{"frictionloss", "Coulomb's law of each axis has no meaning for a rotation in space"},
+          std::pair{"stiffness", "its moment has no formula that holds at the angle 0"}})
       if (const Attribute* found = settings_.find(at, name); found != nullptr && !numbers_of(*found, 1, 3)[0].is_zero())
-        robot_.findings.add(fmt::format("{} of ball and free joints", name),
-                            "it is imported for joints with one coordinate", found->where);
-    if (settings_.find(at, "range") != nullptr)
-      robot_.findings.add("range of ball joints", "limits are those of joints with one coordinate", at.element.where);
+        robot_.findings.add(fmt::format("{} of ball and free joints", name), why, found->where);
+    if (const Attribute* range = settings_.find(at, "range"))
+      robot_.findings.add("range of ball joints", "limits are those of joints with one coordinate", range->where);
+  }
+
+  void read_passive(const MjcfElement& at, const char* name, Number& value, const Joint& joint) {
+    const Attribute* attribute = settings_.find(at, name);
+    if (attribute == nullptr) return;
+    value = numbers_of(*attribute, 1, 3)[0];
+    if (value.value < 0)
+      fail(attribute->where, fmt::format("the {} of the joint {} is negative", name, model::quote(joint.name)),
+           "it is at least 0");
   }
 
   /// Axis, limits and passive forces. Returns the position in the pose of the file.
@@ -270,16 +283,9 @@ class MjcfReader {
     const Number reference = place_of(settings_.number(at, "ref", Number()));
     if (!reference.is_zero())
       robot_.findings.add("ref of joints", "coordinates count from the pose of the file", at.element.where);
-    for (const auto& [name, value] :
-         {std::pair{"damping", &joint.damping}, std::pair{"frictionloss", &joint.friction},
-          std::pair{"armature", &joint.armature}, std::pair{"stiffness", &joint.stiffness}}) {
-      const Attribute* attribute = settings_.find(at, name);
-      if (attribute == nullptr) continue;
-      *value = numbers_of(*attribute, 1, 3)[0];
-      if (value->value < 0)
-        fail(attribute->where, fmt::format("the {} of the joint {} is negative", name, model::quote(joint.name)),
-             "it is at least 0");
-    }
+    for (const auto& [name, value] : {std::pair{"damping", &joint.damping}, std::pair{"frictionloss", &joint.friction},
+                                      std::pair{"armature", &joint.armature}, std::pair{"stiffness", &joint.stiffness}})
+      read_passive(at, name, *value, joint);
     joint.spring_reference = place_of(settings_.number(at, "springref", Number())) - reference;
     if (settings_.find(at, "springdamper") != nullptr)
       robot_.findings.add("springdamper of joints", "state stiffness and damping", at.element.where);

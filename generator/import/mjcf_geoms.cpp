@@ -86,14 +86,14 @@ Extent extent_of(const MjcfElement& at, const MjcfSettings& settings, const std:
   return extent;
 }
 
-std::optional<Shape> shape_of(const std::string& type, const Extent& extent, const SourceLocation& where) {
+Shape shape_of(const std::string& type, const Extent& extent, const SourceLocation& where) {
   const Number two(2);
   const auto& s = extent.size;
   if (type == "box") return Shape{ShapeKind::box, {two * s[0], two * s[1], two * s[2]}, extent.pose, where};
   if (type == "sphere") return Shape{ShapeKind::sphere, {s[0], {}, {}}, extent.pose, where};
   if (type == "cylinder") return Shape{ShapeKind::cylinder, {s[0], two * s[1], {}}, extent.pose, where};
   if (type == "capsule") return Shape{ShapeKind::capsule, {s[0], two * s[1], {}}, extent.pose, where};
-  return std::nullopt;
+  return Shape{ShapeKind::ellipsoid, {s[0], s[1], s[2]}, extent.pose, where};
 }
 
 }  // namespace
@@ -107,7 +107,7 @@ MjcfGeom read_geom(const MjcfElement& at, const MjcfSettings& settings, Findings
   if (settings.find(at, "mesh") != nullptr && !is_solid) type = "mesh";
   const Attribute* mass = settings.find(at, "mass");
   MjcfGeom geom;
-  constexpr const char* drawn_kinds = "boxes, capsules, cylinders, spheres and mesh files are drawn";
+  constexpr const char* drawn_kinds = "boxes, capsules, cylinders, ellipsoids, spheres and mesh files are drawn";
   const bool is_hidden = settings.number(at, "group", Number()).value >= first_hidden_group;
   if (is_hidden) findings.add("geoms of groups 3 to 5", "MuJoCo hides them; they are not drawn", at.element.where);
   if (type == "plane" || type == "hfield" || type == "mesh" || type == "sdf") {
@@ -139,7 +139,6 @@ MjcfGeom read_geom(const MjcfElement& at, const MjcfSettings& settings, Findings
   geom.inertia = extent.pose * geom.inertia;
   if (is_hidden) return geom;
   geom.shape = shape_of(type, extent, at.element.where);
-  if (!geom.shape) findings.add(fmt::format("{} of <geom>", type), drawn_kinds, at.element.where);
   return geom;
 }
 

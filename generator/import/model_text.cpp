@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "import/solid_mesh.hpp"
 #include "import/xml.hpp"
 #include "model/names.hpp"
 
@@ -12,6 +14,8 @@ namespace eomgen::import {
 namespace {
 
 constexpr const char* base_prefix = "base";
+// Of turned solids, some 300 kB of text.
+constexpr std::size_t most_points_of_solids = 6000;
 
 /// The index and sign of a coordinate axis; nothing for other vectors.
 std::optional<std::pair<std::size_t, int>> coordinate_axis(const Vector& v) {
@@ -103,12 +107,16 @@ std::vector<std::size_t> ModelWriter::moving_joints() const {
 }
 
 void ModelWriter::name_free_coordinates(const std::string& prefix, std::size_t joint, const std::string& comment) {
+  std::string armature;
   const auto add = [&](const char* part, const char* unit, Number start) {
-    coordinates_.push_back({names_.claim(prefix + "_" + part, "_q"), unit, comment, joint, start, ""});
+    coordinates_.push_back({names_.claim(prefix + "_" + part, "_q"), unit, comment, joint, start, armature});
   };
   const Vector start = joint == no_index ? Vector{} : robot_.joints[joint].start;
   const bool has_place = joint == no_index || robot_.joints[joint].type == JointType::floating;
+  if (has_place && joint != no_index && !robot_.joints[joint].armature.is_zero())
+    armature = value(robot_.joints[joint].armature, "kg", "a_along_" + prefix);
   for (std::size_t k = 0; has_place && k < 3; ++k) add(std::array{"x", "y", "z"}[k], "m", start[k]);
+  armature = joint == no_index ? "" : armature_of_parameters(joint);
   if (options_.attitude == Attitude::euler)
     for (const char* part : {"yaw", "pitch", "roll"}) add(part, "rad", {});
   else
@@ -209,19 +217,24 @@ void ModelWriter::write_body(std::size_t index, const std::string& rotation, con
     body_ += fmt::format("{}{} (line {})", separator, quoted(robot_.links[fused].name), robot_.links[fused].where.line);
     separator = ", ";
   }
+  if (contains_armature(part))
+    body_ += fmt::format("\n# Its inertia contains the armature {} of {}.", to_text(robot_.joints[part.joint].armature),
+                         quoted(robot_.joints[part.joint].name));
   const bool has_mass = !part.inertia.mass.is_zero();
   body_ += fmt::format("\n[[{}]]\nname = \"{}\"\n", has_mass ? "body" : "frame", name);
   if (has_mass) {
     ++result_.bodies;
     body_ += fmt::format("mass = \"{}\"\n", value(part.inertia.mass, "kg", "m_" + name));
     std::array<std::array<std::string, 3>, 3> J;
+    Matrix tensor = part.inertia.tensor;
+    for (std::size_t k = 0; k < 3 && contains_armature(part); ++k)
+      tensor[k][k] = tensor[k][k] + robot_.joints[part.joint].armature;
     constexpr const char* letters = "xyz";
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t k = 0; k < 3; ++k)
         J[i][k] =
-            k < i ? J[k][i]
-                  : value(part.inertia.tensor[i][k], "kg*m^2", fmt::format("I{}{}_{}", letters[i], letters[k], name));
-    body_ += are_principal_moments(part.inertia.tensor)
+            k < i ? J[k][i] : value(tensor[i][k], "kg*m^2", fmt::format("I{}{}_{}", letters[i], letters[k], name));
+    body_ += are_principal_moments(tensor)
                  ? fmt::format("inertia = {{ principal = {} }}\n", triple({J[0][0], J[1][1], J[2][2]}))
                  : fmt::format("inertia = [{}, {}, {}]\n", triple(J[0]), triple(J[1]), triple(J[2]));
     body_ +=
@@ -312,7 +325,7 @@ void ModelWriter::write_shapes(std::size_t index) {
   };
   add(robot_.links[part.link], Pose{});
   for (std::size_t i = 0; i < part.fused.size(); ++i) add(robot_.links[part.fused[i]], part.poses[i]);
-  if (!texts.empty()) draw_ += fmt::format("{} = [{}]\n", link_names_[part.link], fmt::join(texts, ", "));
+  if (!texts.empty()) draw_ += fmt::format("{} = [{}]\n", link_names_[part.link], fmt::join(texts, ",\n  "));
 }
 
 void ModelWriter::write_shape(const Shape& shape, const Pose& pose, const Vector& centre,
@@ -326,23 +339,23 @@ void ModelWriter::write_shape(const Shape& shape, const Pose& pose, const Vector
     texts.push_back(fmt::format("{{ sphere = \"{}\"{} }}", length(shape.size[0]), at));
     return;
   }
-  // Shapes lie along the axes of the body.
-  std::array<std::size_t, 3> axis{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto found = coordinate_axis({pose.R[0][k], pose.R[1][k], pose.R[2][k]});
-    const bool is_needed = shape.kind == ShapeKind::box || k == 2;
-    if (!found && is_needed)
-      return findings_.add("turned shapes", "shapes are drawn along the axes of their link", shape.where);
-    if (found) axis[k] = found->first;
-  }
-  if (shape.kind == ShapeKind::cylinder || shape.kind == ShapeKind::capsule) {
+  if (shape.kind == ShapeKind::capsule)
     for (const long double end : {-0.5L, 0.5L}) {
-      if (shape.kind != ShapeKind::capsule) break;
-      Vector ball = middle;
-      ball[axis[2]] = ball[axis[2]] + Number(end * shape.size[1].value);
+      const Vector ball = middle + pose.R * Vector{Number(), Number(), Number(end * shape.size[1].value)};
       texts.push_back(fmt::format("{{ sphere = \"{}\", at = {} }}", length(shape.size[0]),
                                   triple({length(ball[0]), length(ball[1]), length(ball[2])})));
     }
+  // Shapes of the format lie along the axes of the body.
+  const bool has_axis = shape.kind == ShapeKind::cylinder || shape.kind == ShapeKind::capsule;
+  bool is_along = shape.kind != ShapeKind::ellipsoid;
+  std::array<std::size_t, 3> axis{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto found = coordinate_axis({pose.R[0][k], pose.R[1][k], pose.R[2][k]});
+    if (found) axis[k] = found->first;
+    if (!found && (k == 2 || !has_axis)) is_along = false;
+  }
+  if (!is_along) return write_turned(shape, pose.R, middle, texts);
+  if (has_axis) {
     texts.push_back(fmt::format("{{ cylinder = [\"{}\", \"{}\"], axis = \"e{}\"{} }}", length(shape.size[0]),
                                 length(shape.size[1]), axis[2] + 1, at));
     return;
@@ -350,6 +363,25 @@ void ModelWriter::write_shape(const Shape& shape, const Pose& pose, const Vector
   std::array<std::string, 3> sides;
   for (std::size_t k = 0; k < 3; ++k) sides[axis[k]] = length(shape.size[k]);
   texts.push_back(fmt::format("{{ box = {}{} }}", triple(sides), at));
+}
+
+/// As a mesh.
+void ModelWriter::write_turned(const Shape& shape, const Matrix& R, const Vector& middle,
+                               std::vector<std::string>& texts) {
+  PolygonMesh mesh = mesh_of_solid(shape.kind, shape.size);
+  points_of_solids_ += mesh.points.size();
+  if (points_of_solids_ > most_points_of_solids)
+    return findings_.add("turned shapes", "only the first of them are drawn, with 6000 points", shape.where);
+  double size = 0;
+  for (std::array<double, 3>& p : mesh.points) {
+    const Vector at = R * Vector{Number(p[0]), Number(p[1]), Number(p[2])} + middle;
+    for (std::size_t k = 0; k < 3; ++k) p[k] = static_cast<double>(at[k].value);
+    size = std::max({size, std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])});
+  }
+  for (std::array<double, 3>& p : mesh.points)
+    for (double& x : p)
+      if (std::fabs(x) < 1e-15 * size) x = 0;  // roundings
+  texts.push_back(drawn_mesh(mesh));
 }
 
 }  // namespace eomgen::import

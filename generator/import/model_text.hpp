@@ -33,11 +33,20 @@ class ModelWriter {
   void write_shapes(std::size_t index);
   void write_shape(const Shape& shape, const Pose& pose, const Vector& centre, std::vector<std::string>& texts);
   void write_mesh(const Shape& shape, const Pose& pose, const Vector& centre, std::vector<std::string>& texts);
+  void write_turned(const Shape& shape, const Matrix& R, const Vector& middle, std::vector<std::string>& texts);
   void write_forces();
   void write_drives();
   std::string drive_force(std::size_t joint);
   void write_springs();
   void write_dissipation();
+  void write_free_damping();
+  void write_free_armature();
+  bool turns_freely(std::size_t joint) const;
+  bool is_on_ground(const Part& part) const;
+  bool contains_armature(const Part& part) const;
+  const Part& part_of_joint(std::size_t joint) const;
+  std::string armature_of_parameters(std::size_t joint);
+  std::string relative_rotation(const Part& part) const;
   void write_constraints();
   void write_stops(std::size_t joint);
   void write_scene();
@@ -70,6 +79,7 @@ class ModelWriter {
   std::string parameters_, inputs_, body_, draw_;
   bool gravity_works_ = true;
   std::size_t meshes_ = 0, mesh_bytes_ = 0;  // of the robot; read so far
+  std::size_t points_of_solids_ = 0;         // written so far
   ImportedModel result_;
 };
 

@@ -11,10 +11,10 @@
 
 namespace eomgen::import {
 
-enum class ShapeKind { box, cylinder, capsule, sphere, mesh };
+enum class ShapeKind { box, cylinder, capsule, sphere, ellipsoid, mesh };
 
 /// A shape for drawing: sides of a box; radius and length of a cylinder along its z axis, which in a capsule is between
-/// two half spheres; radius of a sphere; factors of a mesh along its axes.
+/// two half spheres; radius of a sphere; half axes of an ellipsoid; factors of a mesh along its axes.
 struct Shape {
   ShapeKind kind;
   Vector size;
@@ -63,6 +63,7 @@ struct Joint {
   Pose origin;  // of the child's axes at zero, in the parent's
   Vector axis;  // a unit vector along the child's axes; of fixed and floating joints unused
   Limits limits;
+  // Of ball and floating joints for each component of the angular velocity, and of the velocity.
   Number damping, friction, armature;
   Number stiffness, spring_reference;  // the force -stiffness (q - spring_reference)
   Vector start;                        // of a floating joint: its place at the start

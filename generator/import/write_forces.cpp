@@ -93,6 +93,7 @@ void ModelWriter::write_springs() {
 void ModelWriter::write_dissipation() {
   std::string damping, smooth, friction;
   for (const std::size_t j : moving_joints()) {
+    if (turns_freely(j)) continue;
     const Joint& joint = robot_.joints[j];
     const std::string& q = joint_names_[j];
     const bool is_angle = joint.type != JointType::prismatic;
@@ -123,6 +124,7 @@ void ModelWriter::write_dissipation() {
         "\n# Friction by a smooth law: it creeps below {} or {}.\n[[force]]\nname = \"{}\"\n[force.generalized]\n{}",
         friction_width_angle, friction_width_length, names_.claim("friction", "_force"), smooth);
   body_ += friction;
+  write_free_damping();
 }
 
 /// Whether some joint lets a mass rise or fall, by the directions of the joints at zero.
@@ -254,8 +256,8 @@ std::string ModelWriter::header() const {
   text += "\n[coordinates]\n";
   for (const CoordinateText& coordinate : coordinates_) {
     std::string entry = coordinate.unit.empty() ? "{}" : "\"" + coordinate.unit + "\"";
-    if (!coordinate.armature.empty())
-      entry = fmt::format("{{ unit = \"{}\", armature = \"{}\" }}", coordinate.unit, coordinate.armature);
+    const std::string unit = coordinate.unit.empty() ? "" : fmt::format("unit = \"{}\", ", coordinate.unit);
+    if (!coordinate.armature.empty()) entry = fmt::format("{{ {}armature = \"{}\" }}", unit, coordinate.armature);
     text += fmt::format("{} = {}{}\n", coordinate.name, entry,
                         coordinate.comment.empty() ? "" : "  # " + coordinate.comment);
   }
@@ -269,6 +271,7 @@ ImportedModel ModelWriter::write() {
     fail(robot_.where, "nothing moves: every joint is fixed", "give the robot a joint that moves, or use --floating");
   write_parts();
   write_forces();
+  write_free_armature();
   write_constraints();
   if (!draw_.empty()) body_ += "\n[draw]\n" + draw_;
   write_scene();

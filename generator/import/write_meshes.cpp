@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "import/mesh.hpp"
 #include "import/model_text.hpp"
-#include "model/csv_file.hpp"
+#include "import/solid_mesh.hpp"
+#include "model/data_file.hpp"
 
 namespace eomgen::import {
 namespace {
@@ -41,12 +41,9 @@ std::string bytes_of(const std::string& folder, const std::string& name) {
   std::string why = "no file of this name is in the folder of the robot file";
   for (const std::string& path : candidates(name)) {
     try {
-      return model::read_data_file(folder, path, max_mesh_bytes, [&](const std::string& what, const std::string&) {
-        if (what.find("there is no file") == std::string::npos) why = what;
-        throw NotDrawn{why};
-      });
-    } catch (const NotDrawn&) {
-      continue;
+      return model::read_data_file(folder, path, max_mesh_bytes);
+    } catch (const model::DataFileError& error) {
+      if (error.problem() != model::DataFileProblem::missing) why = error.message();
     }
   }
   throw NotDrawn{why};
@@ -73,12 +70,9 @@ void ModelWriter::write_mesh(const Shape& shape, const Pose& pose, const Vector&
     const std::size_t share = std::max(fewest_triangles, triangles_of_robot / meshes_);
     const Mesh drawn = simplify(*mesh, std::min(most_triangles, share), most_points);
     if (drawn.triangles.empty()) throw NotDrawn{"the mesh has no extent"};
-    std::string points, faces;
-    for (const std::array<double, 3>& p : drawn.points)
-      points += fmt::format("{}[{:.9g}, {:.9g}, {:.9g}]", points.empty() ? "" : ", ", p[0], p[1], p[2]);
-    for (const std::array<std::uint32_t, 3>& t : drawn.triangles)
-      faces += fmt::format("{}[{}, {}, {}]", faces.empty() ? "" : ", ", t[0] + 1, t[1] + 1, t[2] + 1);
-    texts.push_back(fmt::format("{{ mesh = [{}], faces = [{}] }}", points, faces));
+    PolygonMesh polygons{drawn.points, {}};
+    for (const std::array<std::uint32_t, 3>& t : drawn.triangles) polygons.faces.emplace_back(t.begin(), t.end());
+    texts.push_back(drawn_mesh(polygons));
     if (drawn.triangles.size() < mesh->triangles.size())
       findings_.add("triangles of meshes", "meshes are drawn with fewer triangles", shape.where);
   } catch (const NotDrawn& reason) {

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <string_view>
 
 #include "model/content_hash.hpp"
@@ -155,39 +153,6 @@ class CsvReader {
 };
 
 }  // namespace
-
-std::string read_data_file(const std::string& folder, const std::string& path, std::size_t most,
-                           const RefusePath& refuse) {
-  namespace fs = std::filesystem;
-  if (folder.empty())
-    refuse("a model that is given as text names no files",
-           "read the model from a file, or state the folder of its files");
-  const fs::path relative(path);
-  const bool is_plain =
-      std::none_of(path.begin(), path.end(), [](char c) { return (c >= 0 && c < 0x20) || c == '\\'; });
-  if (path.empty() || !is_plain || relative.is_absolute() ||
-      std::find(relative.begin(), relative.end(), fs::path("..")) != relative.end())
-    refuse(fmt::format("{} is not a path inside the model's folder", quote(path)),
-           "put the file beside the model file, and write its name");
-  std::error_code problem;
-  const fs::path whole = fs::path(folder) / relative;
-  const fs::path inside = fs::canonical(folder, problem), target = fs::canonical(whole, problem);
-  if (problem || !fs::is_regular_file(target, problem))
-    refuse(fmt::format("there is no file {} in the model's folder", quote(path)),
-           "put the file beside the model file, and write its name");
-  const auto [end, rest] = std::mismatch(inside.begin(), inside.end(), target.begin(), target.end());
-  if (end != inside.end())
-    refuse(fmt::format("{} is a link to a place outside the model's folder", quote(path)), "copy the file there");
-  std::ifstream stream(target, std::ios::binary);
-  std::string text(most + 1, '\0');  // one byte more than allowed, to detect a file that is too large
-  if (stream) stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!stream.is_open() || stream.bad())
-    refuse(fmt::format("the file {} cannot be read", quote(path)), "check its permissions");
-  text.resize(static_cast<std::size_t>(stream.gcount()));
-  if (text.size() > most)
-    refuse(fmt::format("the file {} has more than {} bytes", quote(path), most), "keep the rows that a run needs");
-  return text;
-}
 
 CsvColumns read_csv(const std::string& file, const std::string& text, const std::array<std::string, 2>& names) {
   CsvColumns columns = CsvReader(file, names).read(text);

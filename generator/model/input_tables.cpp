@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "model/csv_file.hpp"
+#include "model/data_file.hpp"
 #include "model/read_scenes.hpp"
 #include "model/units.hpp"
 
@@ -78,9 +79,12 @@ InputTable ScenesReader::read_csv_table(const Value& table, const Symbol& input,
   const double time_factor = factor("time_unit", dimension_of("s")),
                factor_of_values = factor("unit", input.typed.dimension);
   const Span place = table.find("csv")->span;
-  const std::string text = read_data_file(
-      context_.folder, path, max_csv_bytes,
-      [&](const std::string& problem, const std::string& remedy) { source_.fail(place, problem, remedy); });
+  std::string text;
+  try {
+    text = read_data_file(context_.folder, path, max_csv_bytes);
+  } catch (const DataFileError& error) {
+    source_.fail(place, error.message(), error.remedy());
+  }
   CsvColumns columns = read_csv((std::filesystem::path(context_.folder) / path).string(), text,
                                 {column("time", "t"), column("value", input.name)});
   for (double& t : columns.first) t *= time_factor;

@@ -286,6 +286,15 @@ class Table(Record):
         axes.legend()
         return axes
 
+    def svg(self, *columns: str) -> str:
+        """Columns over time, by default all of them, as the text of an SVG picture. It needs no other package."""
+        from . import _core
+
+        names = list(columns or self.columns)
+        units = {self.__dict__.get("units", {}).get(name, "") for name in names}
+        label = units.pop() if len(units) == 1 else ""
+        return _core.line_plot(names, self.times.tolist(), [self[name].tolist() for name in names], label)
+
 
 class Motion(Table):
     """A motion of a scene.

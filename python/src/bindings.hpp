@@ -24,6 +24,7 @@ using Holder = std::unique_ptr<T, DeleteWithoutGil<T>>;
 
 void add_model(py::module_& module);
 void add_robot(py::module_& module);
+void add_plot(py::module_& module);
 void add_compiled_model(py::module_& module);
 void add_simulation(py::module_& module);
 

@@ -53,6 +53,7 @@ PYBIND11_MODULE(_core, module) {
   module.def("targets", &eomgen::targets);
   add_model(module);
   add_robot(module);
+  add_plot(module);
   add_compiled_model(module);
   add_simulation(module);
 }

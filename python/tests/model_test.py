@@ -314,5 +314,20 @@ class InterruptTest(unittest.TestCase):
         self.assertEqual(out, "signal\ndone\n", err)
 
 
+class PlotTest(unittest.TestCase):
+    def test_a_plot_is_an_svg_picture_of_the_columns(self):
+        from xml.etree import ElementTree
+
+        table = eomgen.records.Table(columns=["a<b", "v"], times=np.array([0.0, 1.0]), rows=np.array([[1.0, 2.0], [3.0, 4.0]]))
+        for names in ([], ["v"]):
+            root = ElementTree.fromstring(table.svg(*names))
+            self.assertTrue(root.tag.endswith("svg"))
+            texts = "".join(root.itertext())
+            self.assertIn("v", texts)
+            self.assertEqual("a<b" in texts, not names)
+        with self.assertRaises(KeyError):
+            table.svg("w")
+
+
 if __name__ == "__main__":
     unittest.main()
