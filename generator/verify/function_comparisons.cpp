@@ -4,6 +4,7 @@
 #include <cln/integer.h>
 #include <cln/rational.h>
 #include <cln/real.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,7 @@
 #include "system/contact_set.hpp"
 #include "verify/applied_forces.hpp"
 #include "verify/central_differences.hpp"
+#include "verify/frame_comparison.hpp"
 
 namespace eomgen::verify {
 namespace {
@@ -65,6 +67,7 @@ class FunctionComparisons {
         {"events", &FunctionComparisons::events},
         {"resets", &FunctionComparisons::resets},
         {"contact_rows", &FunctionComparisons::contact_rows},
+        {"frames", &FunctionComparisons::frames},
         {"taylor", &FunctionComparisons::taylor}};
     const auto found = statements.find(function);
     if (found == statements.end()) throw std::logic_error("nothing is said of the function '" + function + "'");
@@ -268,6 +271,11 @@ class FunctionComparisons {
                                                       sizes_[0].at(places[i]) + expected.sizes[i]));
     }
     if (!roots.empty()) note("outputs", system_name(s_), largest);
+  }
+
+  void frames(const AbiResults& values) {
+    for (const FrameDifference& part : frame_differences(values, sizes_, s_.free, oracle_, v_.state))
+      tally_.record(fmt::format("{} of {}", part.what, program_.name), oracle_name, false, part.largest);
   }
 
   void events(const AbiResults& values) {

@@ -12,7 +12,21 @@ namespace {
 
 using Arguments = CompiledModel::Arguments;
 
-enum class Size { none, states, coordinates, parameters, inputs, constraints, reactions, outputs, events };
+enum class Size {
+  none,
+  states,
+  coordinates,
+  parameters,
+  inputs,
+  constraints,
+  reactions,
+  outputs,
+  events,
+  poses,           // 12 of each frame
+  twist,           // linear and angular
+  twists,          // of each frame
+  frame_tangents,  // of each frame by each coordinate
+};
 
 std::size_t value_of(Size size, const CompiledModel& model) {
   switch (size) {
@@ -24,6 +38,10 @@ std::size_t value_of(Size size, const CompiledModel& model) {
     case Size::reactions: return model.reactions().size();
     case Size::outputs: return model.outputs().size();
     case Size::events: return model.event_count();
+    case Size::poses: return 12 * model.frames().size();
+    case Size::twist: return 6;
+    case Size::twists: return 6 * model.frames().size();
+    case Size::frame_tangents: return model.coordinate_count() * model.frames().size();
     case Size::none: break;
   }
   return 1;
@@ -139,6 +157,14 @@ constexpr std::array functions{
              1,
              {{{Size::events}}},
              [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.events(at, r[0]); }},
+    Function{
+        "_frames",
+        "frames",
+        "_frames" EOMGEN_ARGUMENTS
+        "Position and axes of each frame: (12 F,); columns of all Jacobians: (6, F n); biases: (6 F,).",
+        3,
+        {{{Size::poses}, {Size::twist, Size::frame_tangents}, {Size::twists}}},
+        [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.frames(at, r[0], r[1], r[2]); }},
 };
 
 #undef EOMGEN_ARGUMENTS
@@ -387,6 +413,7 @@ void add_compiled_model(py::module_& module) {
       .def("_constraints", [](const CompiledModel& f) { return f.constraints(); })
       .def("_reactions", [](const CompiledModel& f) { return f.reactions(); })
       .def("_events", [](const CompiledModel& f) { return f.events(); })
+      .def("_frame_names", [](const CompiledModel& f) { return f.frames(); })
       .def("_event_count", &CompiledModel::event_count)
       .def("_coordinate_count", &CompiledModel::coordinate_count)
       .def("_certificate", &CompiledModel::certificate)

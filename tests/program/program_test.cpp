@@ -119,8 +119,9 @@ TEST_CASE("program: unknown functions and outputs are rejected by name") {
     return "";
   };
   CHECK(message({"rhs_batch"}, {}) ==
-        "there is no function `rhs_batch` / available functions: jac, jac_p, jac_u, mass, momenta, constraints, "
-        "reactions, outputs, events, contact_rows, resets, taylor");
+        "there is no function `rhs_batch` / available functions: jac, jac_p, jac_u, mass, momenta, "
+        "constraints, "
+        "reactions, outputs, events, contact_rows, resets, frames, taylor");
   CHECK(message({"jacobian"}, {}).starts_with("there is no function `jacobian`"));
   CHECK(message({}, {"energie"}) == "there is no output `energie` / outputs of this model: energy, kinetic, potential");
 }

@@ -185,7 +185,8 @@ Subject subject(const std::string& model) {
       std::make_shared<const model::Model>(model::read_model(std::string(EOMGEN_TEST_MODELS) + "/" + model + ".toml")),
       pipeline::ApproachChoice::automatic);
   program::Request request;
-  request.with = {"jac", "jac_p", "jac_u", "mass", "momenta", "constraints", "reactions", "events", "taylor"};
+  request.with = {"jac",         "jac_p",     "jac_u",  "mass",   "momenta",
+                  "constraints", "reactions", "events", "frames", "taylor"};
   request.outputs = {"energy", "kinetic", "power"};
   for (const system::Output& output : s.derived->candidates.front().outputs) {
     if (output.name.find("position") != std::string::npos || output.name.find("velocity") != std::string::npos)
