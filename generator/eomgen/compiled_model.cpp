@@ -180,6 +180,9 @@ int CompiledModel::constraints(const Arguments& at, double* psi, double* A, doub
 int CompiledModel::reactions(const Arguments& at, double* lambda) const { return EOMGEN_CALL(reactions, lambda); }
 int CompiledModel::outputs(const Arguments& at, double* y) const { return EOMGEN_CALL(outputs, y); }
 int CompiledModel::events(const Arguments& at, double* g) const { return EOMGEN_CALL(events, g); }
+int CompiledModel::energy_gradients(const Arguments& at, double* energies, double* dT, double* dU) const {
+  return EOMGEN_CALL(energy_gradients, energies, dT, dU);
+}
 int CompiledModel::frames(const Arguments& at, double* pose, double* J, double* bias) const {
   return EOMGEN_CALL(frames, pose, J, bias);
 }

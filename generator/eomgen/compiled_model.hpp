@@ -29,7 +29,7 @@ struct CompileOptions {
   std::string tier = "auto";               // see RunOptions::tier
   std::optional<std::string> solver = {};  // of simulations, one of solvers(); replaces the scene's
   /// Functions beside rhs and outputs: "jac", "jac_p", "jac_u", "mass", "momenta", "constraints", "reactions",
-  /// "events", "frames", "taylor". None given: jac, mass, and for a model with constraints also
+  /// "events", "energy_gradients", "frames", "taylor". None given: jac, mass, and for a model with constraints also
   /// constraints and reactions.
   std::optional<std::vector<std::string>> functions = {};
   std::vector<std::string> outputs = {};  // in addition to coordinates; replace the scene's; "all": every output
@@ -101,6 +101,8 @@ class CompiledModel {
   int events(const Arguments& at, double* g) const;          // E, then kinks, then five of each contact
   std::size_t event_count() const;                           // length of g
   std::size_t mode_size() const;                             // one entry per contact, then per kink
+  /// T and U; dT/dq, then dT/d(qdot): 2 n; dU/dq: n.
+  int energy_gradients(const Arguments& at, double* energies, double* dT, double* dU) const;
   /// Per frame: its position and axes e1, e2, e3 (12); the Jacobian of its linear and angular velocity (6 x n by
   /// columns); its linear and angular acceleration at qddot = 0 (6).
   int frames(const Arguments& at, double* pose, double* J, double* bias) const;

@@ -196,6 +196,7 @@ FunctionExpressions function_expressions(AbiFunctions& functions, const std::str
       {"jac", &AbiFunctions::jac},
       {"mass", &AbiFunctions::mass},
       {"momenta", &AbiFunctions::momenta},
+      {"energy_gradients", &AbiFunctions::energy_gradients},
       {"constraints", &AbiFunctions::constraints},
       {"reactions", &AbiFunctions::reactions},
       {"events", &AbiFunctions::events},

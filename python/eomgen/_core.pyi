@@ -155,6 +155,9 @@ class CompiledModel:
     def events(
         self, t: ArrayLike, x: ArrayLike, inputs: Inputs = None, parameters: Optional[ArrayLike] = None, mode: Mode = None
     ) -> Array: ...
+    def energy_gradients(
+        self, t: ArrayLike, x: ArrayLike, inputs: Inputs = None, parameters: Optional[ArrayLike] = None, mode: Mode = None
+    ) -> Tuple[Array, Array, Array]: ...
     def _frames(
         self, t: ArrayLike, x: ArrayLike, inputs: Inputs = None, parameters: Optional[ArrayLike] = None, mode: Mode = None
     ) -> Tuple[Array, Array, Array]: ...

@@ -22,6 +22,8 @@ enum class Size {
   reactions,
   outputs,
   events,
+  energies,        // T, U
+  slopes,          // by q, then by qdot
   poses,           // 12 of each frame
   twist,           // linear and angular
   twists,          // of each frame
@@ -38,6 +40,8 @@ std::size_t value_of(Size size, const CompiledModel& model) {
     case Size::reactions: return model.reactions().size();
     case Size::outputs: return model.outputs().size();
     case Size::events: return model.event_count();
+    case Size::energies: return 2;
+    case Size::slopes: return 2 * model.coordinate_count();
     case Size::poses: return 12 * model.frames().size();
     case Size::twist: return 6;
     case Size::twists: return 6 * model.frames().size();
@@ -157,6 +161,16 @@ constexpr std::array functions{
              1,
              {{{Size::events}}},
              [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.events(at, r[0]); }},
+    Function{"energy_gradients",
+             "energy_gradients",
+             "energy_gradients" EOMGEN_ARGUMENTS
+             "(energies, dT, dU): T and U, (2,); dT/dq, then dT/d(qdot), (2 n,); dU/dq, (n,); or with K in front.\n"
+             "Arguments as of rhs.",
+             3,
+             {{{Size::energies}, {Size::slopes}, {Size::coordinates}}},
+             [](const CompiledModel& f, const Arguments& at, double* const* r) {
+               return f.energy_gradients(at, r[0], r[1], r[2]);
+             }},
     Function{
         "_frames",
         "frames",

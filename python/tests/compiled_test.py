@@ -32,7 +32,7 @@ class CompiledModelTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.model = shipped("cart_pendulum")
-        functions = ["jac", "jac_u", "jac_p", "mass", "momenta", "taylor"]
+        functions = ["jac", "jac_u", "jac_p", "mass", "momenta", "energy_gradients", "taylor"]
         cls.f = cls.model.compile(functions=functions, outputs="all")
 
     def states(self, count):
@@ -100,6 +100,11 @@ class CompiledModelTest(unittest.TestCase):
         np.testing.assert_allclose(np.linalg.solve(mass, -bias), self.f.rhs(0.0, x)[2:], rtol=1e-12)
         momenta, _ = self.f.momenta(0.0, x)
         np.testing.assert_allclose(momenta, mass @ x[2:], rtol=1e-13)
+        energies, dT, dU = self.f.energy_gradients(0.0, x)
+        np.testing.assert_allclose(energies, [x[2:] @ mass @ x[2:] / 2, -m * g * l * np.cos(x[1])], rtol=1e-13)
+        np.testing.assert_allclose(dT[2:], momenta, rtol=1e-13)
+        np.testing.assert_allclose(dT[:2], [0, -m * l * x[2] * x[3] * np.sin(x[1])], rtol=1e-13)
+        np.testing.assert_allclose(dU, [0, m * g * l * np.sin(x[1])], rtol=1e-13)
 
     def test_frames_have_poses_jacobians_and_biases(self):
         f = shipped("R10_lagrange_top").compile(functions=["frames"])

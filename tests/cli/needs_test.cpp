@@ -80,6 +80,7 @@ TEST_CASE("needs: a requested function adds its symbol and does not change the r
                                         {{"--with", "jac_p"}, "jac_p"},
                                         {{"--with", "jac_u"}, "jac_u"},
                                         {{"--with", "mass"}, "mass"},
+                                        {{"--with", "energy_gradients"}, "energy_gradients"},
                                         {{"--with", "frames"}, "frames"},
                                         {{"--with", "constraints"}, "constraints"},
                                         {{"--output", "energy"}, "outputs"}}) {

@@ -142,7 +142,7 @@ const std::vector<Words>& derive_calls() {
        "text"},
       {"verify", "--no-compile", "--points", "3", "--json"},
       {"emit", "-o", "OUT", "--with",
-       "jac,jac_p,jac_u,mass,frames,constraints,reactions,outputs,events,energy", "--json"},
+       "jac,jac_p,jac_u,mass,energy_gradients,frames,constraints,reactions,outputs,events,energy", "--json"},
       {"emit", "-o", "OUT", "--target", "python", "--approach", "I", "--json"},
       {"emit", "-o", "OUT", "--target", "latex", "--json"},
       {"emit", "-o", "OUT", "--target", "c", "--with", "taylor,momenta", "--json"},

@@ -207,7 +207,7 @@ TEST_CASE(
         "R1_free_body_euler_parameters", "R6_rough_disk", "R10_lagrange_top", "R18_rodrigues", "bilinear_oscillator",
         "cart_pendulum", "knife_edge", "n_four_bar_2", "stick_slip_belt"})
     models.push_back(compared_model(
-        name, {"jac", "jac_p", "jac_u", "mass", "constraints", "reactions", "events", "frames"},
+        name, {"jac", "jac_p", "jac_u", "mass", "constraints", "reactions", "events", "frames", "energy_gradients"},
         {"energy", "kinetic"}));
   for (ComparedModel& model : models) {
     call_c(model);

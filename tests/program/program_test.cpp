@@ -119,7 +119,7 @@ TEST_CASE("program: unknown functions and outputs are rejected by name") {
     return "";
   };
   CHECK(message({"rhs_batch"}, {}) ==
-        "there is no function `rhs_batch` / available functions: jac, jac_p, jac_u, mass, momenta, "
+        "there is no function `rhs_batch` / available functions: jac, jac_p, jac_u, mass, momenta, energy_gradients, "
         "constraints, "
         "reactions, outputs, events, contact_rows, resets, frames, taylor");
   CHECK(message({"jacobian"}, {}).starts_with("there is no function `jacobian`"));

@@ -185,7 +185,7 @@ Subject subject(const std::string& model) {
       std::make_shared<const model::Model>(model::read_model(std::string(EOMGEN_TEST_MODELS) + "/" + model + ".toml")),
       pipeline::ApproachChoice::automatic);
   program::Request request;
-  request.with = {"jac",         "jac_p",     "jac_u",  "mass",   "momenta",
+  request.with = {"jac",         "jac_p",     "jac_u",  "mass",   "momenta", "energy_gradients",
                   "constraints", "reactions", "events", "frames", "taylor"};
   request.outputs = {"energy", "kinetic", "power"};
   for (const system::Output& output : s.derived->candidates.front().outputs) {

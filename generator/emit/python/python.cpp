@@ -19,7 +19,7 @@ namespace {
 // Functions that the module wraps.
 constexpr const char* wrapped_functions[] = {
     "rhs",     "jac",    "jac_p",        "jac_u",  "mass",   "momenta",          "constraints", "reactions",
-    "outputs", "events", "contact_rows", "resets", "frames", "taylor"};
+    "outputs", "events", "contact_rows", "resets", "frames", "energy_gradients", "taylor"};
 
 /// _rhs = _function("rhs", "daaaia"): one letter per argument type.
 std::string c_function_declarations() {
