@@ -20,15 +20,15 @@ namespace eomgen::analysis {
 
 const std::vector<std::string>& equation_keys() {
   static const std::vector<std::string> keys{
-      "kinematics", "basis",     "metric",      "christoffel", "line_element",  "frenet",    "energies",
-      "lagrangian", "equations", "constraints", "reactions",   "friction",      "conserved", "singular",
-      "routh",      "linear",    "solved",      "forces",      "contravariant", "balance",   "all"};
+      "kinematics", "regressor", "basis",       "metric",        "christoffel", "line_element", "frenet",   "energies",
+      "lagrangian", "equations", "constraints", "reactions",     "friction",    "conserved",    "singular", "routh",
+      "linear",     "solved",    "forces",      "contravariant", "balance",     "all"};
   return keys;
 }
 
 bool is_part_of_all(const std::string& key) {
-  static const std::vector<std::string> on_request{"kinematics", "linear",        "routh",  "solved",
-                                                   "forces",     "contravariant", "balance"};
+  static const std::vector<std::string> on_request{"kinematics", "regressor", "linear",        "routh",
+                                                   "solved",     "forces",    "contravariant", "balance"};
   return std::find(on_request.begin(), on_request.end(), key) == on_request.end();
 }
 

@@ -275,6 +275,7 @@ std::string info_json(const program::Program& program, const EmissionContext& co
   info["inputs"] = named(context.inputs);
   info["outputs"] = program.outputs;
   info["reactions"] = program.reactions;
+  if (program.result_size("frames") > 0) info["frames"] = context.frames;
   for (std::size_t i = 0; i < program.events.size(); ++i) {
     const EventDescription& event = context.events.at(i);
     info["events"].push_back({{"name", event.name}, {"direction", event.direction}, {"action", event.action}});

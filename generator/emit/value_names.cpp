@@ -50,6 +50,7 @@ std::string result_entry_name(const program::Function& function, const ModelName
   if (function.name == "jac" && result == 0 && entry % all == 0) return fmt::format("d/d {}", names.state[entry / all]);
   if (function.name == "jac_p" && entry % all == 0) return fmt::format("d/d {}", names.parameters[entry / all]);
   if (function.name == "jac_u" && entry % all == 0) return fmt::format("d/d {}", names.inputs[entry / all]);
+  if (function.name == "frames" && result == 0 && entry % 12 == 0) return names.frames[entry / 12];
   if (function.name == "outputs") return names.outputs[entry];
   if (function.name == "reactions") return names.reactions[entry];
   return function.name == "events" ? names.events[entry] : "";

@@ -5,6 +5,7 @@
 #include <eom/modes/contacts.hpp>
 #include <limits>
 
+#include "derive/frames.hpp"
 #include "eomgen/compiled_state.hpp"
 #include "eomgen/model.hpp"
 #include "run/bind.hpp"
@@ -67,6 +68,7 @@ CompiledModel::State::State(PreparedRun from, std::shared_ptr<PreparedRuns> cach
   for (const std::uint32_t k : system.active) constraints.push_back(derived.mechanics.constraints[k].label);
   reactions = run.compilation->program.reactions;
   for (const model::Event& event : model.events) events.push_back(event.name);
+  if (functions().has("frames")) frames = derive::frame_names(model);
   values = values_of(*bound, run.plan->solver, states.size());
   certificate = run.compilation->certificate.summary();
   tier = pipeline::name(run.compilation->tier.tier);
@@ -95,6 +97,7 @@ const std::vector<Quantity>& CompiledModel::outputs() const { return state_->out
 const std::vector<std::string>& CompiledModel::constraints() const { return state_->constraints; }
 const std::vector<std::string>& CompiledModel::reactions() const { return state_->reactions; }
 const std::vector<std::string>& CompiledModel::events() const { return state_->events; }
+const std::vector<std::string>& CompiledModel::frames() const { return state_->frames; }
 std::size_t CompiledModel::coordinate_count() const { return state_->code().free.size(); }
 const std::string& CompiledModel::certificate() const { return state_->certificate; }
 const std::string& CompiledModel::tier() const { return state_->tier; }
@@ -144,7 +147,9 @@ int call(const CompiledModel& model, Function function, const CompiledModel::Arg
          const std::vector<double>& constant_inputs, Results... results) {
   if (function == nullptr) return CompiledModel::not_compiled;
   const double* const p = at.parameters != nullptr ? at.parameters : parameters;
-  if constexpr (!requires { function(at.t, at.x, p, results...); }) {
+  if constexpr (requires { function(at.t, at.x, p, at.mode, results...); }) {
+    return function(at.t, at.x, p, at.mode, results...);
+  } else if constexpr (!requires { function(at.t, at.x, p, results...); }) {
     if (at.inputs != nullptr || !constant_inputs.empty() || model.inputs().empty()) {
       return call_with_inputs(function, at, p, at.inputs != nullptr ? at.inputs : constant_inputs.data(), results...);
     }
@@ -192,6 +197,12 @@ int CompiledModel::constraints(const Arguments& at, double* psi, double* A, doub
 int CompiledModel::reactions(const Arguments& at, double* lambda) const { return EOMGEN_CALL(reactions, lambda); }
 int CompiledModel::outputs(const Arguments& at, double* y) const { return EOMGEN_CALL(outputs, y); }
 int CompiledModel::events(const Arguments& at, double* g) const { return EOMGEN_CALL(events, g); }
+int CompiledModel::energy_gradients(const Arguments& at, double* energies, double* dT, double* dU) const {
+  return EOMGEN_CALL(energy_gradients, energies, dT, dU);
+}
+int CompiledModel::frames(const Arguments& at, double* pose, double* J, double* bias) const {
+  return EOMGEN_CALL(frames, pose, J, bias);
+}
 
 #undef EOMGEN_CALL
 

@@ -29,8 +29,8 @@ struct CompileOptions {
   std::string tier = "auto";               // see RunOptions::tier
   std::optional<std::string> solver = {};  // of simulations, one of solvers(); replaces the scene's
   /// Functions beside rhs and outputs: "jac", "jac_p", "jac_u", "jvp", "vjp", "adjoint", "hvp", "inverse", "coriolis",
-  /// "gravity", "mass", "momenta", "constraints", "reactions", "events", "taylor". None given: jac, mass, and for a
-  /// model with constraints also constraints and reactions.
+  /// "gravity", "mass", "momenta", "constraints", "reactions", "events", "energy_gradients", "frames", "taylor". None
+  /// given: jac, mass, and for a model with constraints also constraints and reactions.
   std::optional<std::vector<std::string>> functions = {};
   std::vector<std::string> outputs = {};  // in addition to coordinates; replace the scene's; "all": every output
   bool charts = true;                     // allow simulations to change charts near singularities
@@ -64,6 +64,7 @@ class CompiledModel {
   const std::vector<std::string>& constraints() const;  // m, labels of the constraints with multipliers
   const std::vector<std::string>& reactions() const;    // labels of all constraints, in the order of reactions()
   const std::vector<std::string>& events() const;       // names of the model's events, the first of events()
+  const std::vector<std::string>& frames() const;       // bodies, particles, points, in the order of frames()
   std::size_t coordinate_count() const;                 // n
   const std::string& certificate() const;               // summary of the verification
   const std::string& tier() const;                      // "jit" or "compiled"
@@ -108,6 +109,11 @@ class CompiledModel {
   int events(const Arguments& at, double* g) const;          // E, then kinks, then five of each contact
   std::size_t event_count() const;                           // length of g
   std::size_t mode_size() const;                             // one entry per contact, then per kink
+  /// T and U; dT/dq, then dT/d(qdot): 2 n; dU/dq: n.
+  int energy_gradients(const Arguments& at, double* energies, double* dT, double* dU) const;
+  /// Per frame: its position and axes e1, e2, e3 (12); the Jacobian of its linear and angular velocity (6 x n by
+  /// columns); its linear and angular acceleration at qddot = 0 (6).
+  int frames(const Arguments& at, double* pose, double* J, double* bias) const;
   /// coefficients[i + N k]: the k-th derivative of x_i over k!, k = 0 .. order, at constant inputs.
   int taylor(const Arguments& at, int order, double* coefficients) const;
 

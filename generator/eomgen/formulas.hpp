@@ -34,8 +34,8 @@ struct Multiplier {
 /// Options of Model::equations().
 struct EquationsOptions {
   Approach approach = Approach::automatic;
-  /// Formula keys, as in `eomgen derive --show`. "all": every key except "kinematics", "linear", "routh", "solved",
-  /// "forces", "contravariant" and "balance".
+  /// Formula keys, as in `eomgen derive --show`. "all": every key except "kinematics", "regressor", "linear", "routh",
+  /// "solved", "forces", "contravariant" and "balance".
   std::vector<std::string> show{"equations", "constraints", "reactions", "friction"};
 };
 

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "derive/formulations.hpp"
+#include "derive/frames.hpp"
 #include "derive/trees/body_residual.hpp"
 #include "emit/self_test.hpp"
 #include "error.hpp"
@@ -219,6 +220,7 @@ program::Program make_program(DerivedModel& derived, const program::Request& req
   complete.parameters = derived.model.parameters.size();
   complete.inputs = derived.model.inputs.size();
   complete.residual = [&derived] { return derive::body_residual(derived.mechanics); };
+  if (!complete.frames) complete.frames = [&derived] { return derive::frames(derived.mechanics); };
   program::Program program = program::build_program(derived.candidates, complete);
   derived.seconds.optimise += watch.lap();
   return program;
@@ -371,6 +373,7 @@ emit::EmissionContext emission_context(DerivedModel& derived, const program::Pro
     context.sample_formulas.push_back({formula(sample.every), formula(sample.offset)});
   }
   ResetPlaces resets = reset_places(derived, scene);
+  context.frames = derive::frame_names(model);
   for (std::size_t i = 0; i < model.events.size(); ++i) {
     const model::Event& event = model.events[i];
     context.events.push_back(

@@ -418,6 +418,7 @@ void add_statements(const Mechanics& m, const DisplayForm& form, const std::vect
     add_system_basis(m, out);
   }
   if (std::find(show.begin(), show.end(), "kinematics") != show.end()) add_kinematics(m, out);
+  if (std::find(show.begin(), show.end(), "regressor") != show.end()) add_regressor(m, out);
   if (std::find(show.begin(), show.end(), "forces") != show.end()) add_body_forces(m, out);
   if (std::find(show.begin(), show.end(), "contravariant") != show.end()) add_contravariant(m, out);
   if (std::find(show.begin(), show.end(), "balance") != show.end()) add_balance(m, out);

@@ -75,6 +75,8 @@ void add_constraint_forces(const mechanics::Mechanics& mechanics, const reading:
 reading::Formula combination(const reading::Components& components, const std::vector<reading::Formula>& vectors);
 /// Kinematics of every particle, body, point, frame and definition.
 void add_kinematics(const mechanics::Mechanics& mechanics, std::vector<Statement>& out);
+/// The regressor of inertial parameters, and the base parameters.
+void add_regressor(const mechanics::Mechanics& mechanics, std::vector<Statement>& out);
 /// Forces and moments of potentials on bodies.
 void add_body_forces(const mechanics::Mechanics& mechanics, std::vector<Statement>& out);
 /// Euler and dual Euler bases of bodies and frames, under the key "basis".

@@ -80,6 +80,8 @@ class AbiFunctions {
   FunctionExpressions contact_rows();
   /// Per event of the model, then per sample: its condition if it has one, then the values that it sets.
   FunctionExpressions resets();
+  /// T, U and their derivatives by the free coordinates and their rates (energies.cpp).
+  FunctionExpressions energy_gradients();
 
   const std::vector<Kink>& kinks() const { return kinks_; }
 

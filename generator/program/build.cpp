@@ -11,6 +11,7 @@
 
 #include "abi/functions.hpp"
 #include "error.hpp"
+#include "program/frames.hpp"
 #include "program/from_dag.hpp"
 #include "program/hoist.hpp"
 #include "program/taylor.hpp"
@@ -199,6 +200,7 @@ FunctionExpressions function_expressions(AbiFunctions& functions, const std::str
       {"gravity", &AbiFunctions::gravity},
       {"mass", &AbiFunctions::mass},
       {"momenta", &AbiFunctions::momenta},
+      {"energy_gradients", &AbiFunctions::energy_gradients},
       {"constraints", &AbiFunctions::constraints},
       {"reactions", &AbiFunctions::reactions},
       {"events", &AbiFunctions::events},
@@ -208,6 +210,9 @@ FunctionExpressions function_expressions(AbiFunctions& functions, const std::str
   const auto count = [&](std::size_t in_model, symbolic::SymbolKind kind) {
     return in_model > 0 ? in_model : symbol_count(functions.system(), kind);
   };
+  if (name == "frames")
+    return frame_function(*functions.system().dag, request.frames ? request.frames() : std::vector<system::Frame>{},
+                          functions.system().free, request.fix);
   if (name == "jac_p") return functions.jac_p(count(request.parameters, symbolic::SymbolKind::parameter));
   if (name == "jac_u") return functions.jac_u(count(request.inputs, symbolic::SymbolKind::input));
   if (name == "jvp") return functions.jvp(by);

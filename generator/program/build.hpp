@@ -11,6 +11,7 @@
 
 #include "program/program.hpp"
 #include "system/equation_system.hpp"
+#include "system/frame.hpp"
 
 namespace eomgen::program {
 
@@ -21,6 +22,8 @@ struct Request {
   std::size_t parameters = 0, inputs = 0;           // count in the model, for jac_p, jac_u; 0: those in the equations
   /// Derives the residual of trees, for derivatives by it. Empty: derivatives from M and f only.
   std::function<std::optional<system::Residual>()> residual = {};
+  /// Derives the motions of bodies, particles and points, for the function `frames`. Empty: it has no frames.
+  std::function<std::vector<system::Frame>()> frames = {};
   bool optimise = true;  // false: code as derived (for tests and comparisons)
 };
 

@@ -4,6 +4,7 @@
 #include <cln/integer.h>
 #include <cln/rational.h>
 #include <cln/real.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +17,8 @@
 #include "verify/applied_forces.hpp"
 #include "verify/central_differences.hpp"
 #include "verify/derivative_comparisons.hpp"
+#include "verify/energy_comparison.hpp"
+#include "verify/frame_comparison.hpp"
 
 namespace eomgen::verify {
 namespace {
@@ -64,6 +67,8 @@ class FunctionComparisons {
         {"events", &FunctionComparisons::events},
         {"resets", &FunctionComparisons::resets},
         {"contact_rows", &FunctionComparisons::contact_rows},
+        {"frames", &FunctionComparisons::frames},
+        {"energy_gradients", &FunctionComparisons::energy_gradients},
         {"taylor", &FunctionComparisons::taylor}};
     const auto found = statements.find(function);
     if (found == statements.end()) throw std::logic_error("nothing is said of the function '" + function + "'");
@@ -211,6 +216,25 @@ class FunctionComparisons {
                                                       sizes_[0].at(places[i]) + expected.sizes[i]));
     }
     if (!roots.empty()) note("outputs", system_name(s_), largest);
+  }
+
+  void energy_gradients(const AbiResults& values) {
+    tally_.record("energies of " + program_.name, oracle_name, false,
+                  energy_difference(values, sizes_, oracle_.energy_values(v_.state)));
+    std::vector<Real> direction;
+    for (std::size_t j = 0; j < 2 * s_.free.size(); ++j) direction.push_back(direction_component(j));
+    const std::optional<CentralDifference> differences =
+        slope("energy_gradients", [&](AbiArguments& at, const Real& h) {
+          for (std::size_t j = 0; j < direction.size(); ++j) at.x[j] = at.x[j] + h * direction[j];
+        });
+    if (differences)
+      note("energy_gradients", "differences of energies",
+           gradient_difference(values, sizes_, direction, *differences, power_of_ten(-tally_.digits())));
+  }
+
+  void frames(const AbiResults& values) {
+    for (const FrameDifference& part : frame_differences(values, sizes_, s_.free, oracle_, v_.state))
+      tally_.record(fmt::format("{} of {}", part.what, program_.name), oracle_name, false, part.largest);
   }
 
   void events(const AbiResults& values) {

@@ -25,6 +25,20 @@ class SceneValues(NamedTuple):
     state: "NDArray[Any]"
 
 
+class Frame(NamedTuple):
+    """The motion of a body, particle or point along the fixed axes: ``compiled.frames(t, x)``.
+
+    ``position``: (3,) in m. ``rotation``: (3, 3), whose columns are the axes of the body; the identity for particles
+    and for points that no body carries. ``jacobian`` J: (6, n), and ``bias``: (6,). The first three rows are linear
+    and the others angular: velocity = J qdot + the part of prescribed motions, acceleration = J qddot + bias.
+    """
+
+    position: "NDArray[Any]"
+    rotation: "NDArray[Any]"
+    jacobian: "NDArray[Any]"
+    bias: "NDArray[Any]"
+
+
 class CompiledModel(_core.CompiledModel):
     """Verified and compiled equations with the numbers of one scene: ``model.compile()``.
 
@@ -99,6 +113,11 @@ class CompiledModel(_core.CompiledModel):
         return self._events()
 
     @property
+    def frame_names(self) -> List[str]:
+        """Names of the bodies, particles and points of frames(); empty unless "frames" was compiled."""
+        return self._frame_names()
+
+    @property
     def units(self) -> Dict[str, str]:
         """SI units of states, parameters, inputs and outputs by name; "" if unknown or a pure number."""
         return {name: unit for group in (self._outputs(), self._states(), self._parameters(), self._inputs()) for name, unit in group}
@@ -161,6 +180,26 @@ class CompiledModel(_core.CompiledModel):
     ) -> "NDArray[Any]":
         """Coefficients of the power series of the motion at constant inputs: (order + 1, N)."""
         return self._taylor(t, x, order, inputs, parameters, mode)
+
+    def frames(self, t: Any, x: "NDArray[Any]", parameters: Any = None, mode: Any = None) -> Dict[str, Frame]:
+        """Poses, Jacobians and bias accelerations of bodies, particles and points by name.
+
+        Arguments as of rhs. K states give arrays with K in front. Needs "frames".
+        """
+        import numpy as np
+
+        pose, tangents, bias = self._frames(t, x, None, parameters, mode)
+        n, ahead = self.coordinate_count, pose.shape[:-1]
+        frames = {}
+        for k, name in enumerate(self.frame_names):
+            axes = pose[..., 12 * k + 3 : 12 * k + 12].reshape(ahead + (3, 3))
+            frames[name] = Frame(
+                pose[..., 12 * k : 12 * k + 3],
+                np.swapaxes(axes, -1, -2),
+                tangents[..., n * k : n * k + n],
+                bias[..., 6 * k : 6 * k + 6],
+            )
+        return frames
 
     def linearize(
         self,

@@ -325,7 +325,7 @@ class Model:
         """Compiles the equations as functions of numbers, with the numbers of a scene.
 
         ``parameters`` replaces values of parameters and initial values. ``functions``: beside "rhs" and "outputs", of
-        "jac", "jac_p", "jac_u", "mass", "momenta", "constraints", "reactions", "events", "taylor"; by default "jac",
+        "jac", "jac_p", "jac_u", "mass", "momenta", "constraints", "reactions", "events", "energy_gradients", "frames", "taylor"; by default "jac",
         "mass", and for a model with constraints "constraints" and "reactions". ``solver``: of simulations.
         """
         options = {

@@ -22,7 +22,13 @@ enum class Size {
   constraints,
   reactions,
   outputs,
-  events
+  events,
+  energies,        // T, U
+  slopes,          // by q, then by qdot
+  poses,           // 12 of each frame
+  twist,           // linear and angular
+  twists,          // of each frame
+  frame_tangents,  // of each frame by each coordinate
 };
 
 std::size_t value_of(Size size, const CompiledModel& model) {
@@ -36,6 +42,12 @@ std::size_t value_of(Size size, const CompiledModel& model) {
     case Size::reactions: return model.reactions().size();
     case Size::outputs: return model.outputs().size();
     case Size::events: return model.event_count();
+    case Size::energies: return 2;
+    case Size::slopes: return 2 * model.coordinate_count();
+    case Size::poses: return 12 * model.frames().size();
+    case Size::twist: return 6;
+    case Size::twists: return 6 * model.frames().size();
+    case Size::frame_tangents: return model.coordinate_count() * model.frames().size();
     case Size::none: break;
   }
   return 1;
@@ -210,6 +222,24 @@ constexpr std::array functions{
              1,
              {{{Size::events}}},
              [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.events(at, r[0]); }},
+    Function{"energy_gradients",
+             "energy_gradients",
+             "energy_gradients" EOMGEN_ARGUMENTS
+             "(energies, dT, dU): T and U, (2,); dT/dq, then dT/d(qdot), (2 n,); dU/dq, (n,); or with K in front.\n"
+             "Arguments as of rhs.",
+             3,
+             {{{Size::energies}, {Size::slopes}, {Size::coordinates}}},
+             [](const CompiledModel& f, const Arguments& at, double* const* r) {
+               return f.energy_gradients(at, r[0], r[1], r[2]);
+             }},
+    Function{
+        "_frames",
+        "frames",
+        "_frames" EOMGEN_ARGUMENTS
+        "Position and axes of each frame: (12 F,); columns of all Jacobians: (6, F n); biases: (6 F,).",
+        3,
+        {{{Size::poses}, {Size::twist, Size::frame_tangents}, {Size::twists}}},
+        [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.frames(at, r[0], r[1], r[2]); }},
 };
 
 #undef EOMGEN_VECTOR_ARGUMENTS
@@ -472,6 +502,7 @@ void add_compiled_model(py::module_& module) {
       .def("_constraints", [](const CompiledModel& f) { return f.constraints(); })
       .def("_reactions", [](const CompiledModel& f) { return f.reactions(); })
       .def("_events", [](const CompiledModel& f) { return f.events(); })
+      .def("_frame_names", [](const CompiledModel& f) { return f.frames(); })
       .def("_event_count", &CompiledModel::event_count)
       .def("_coordinate_count", &CompiledModel::coordinate_count)
       .def("_certificate", &CompiledModel::certificate)

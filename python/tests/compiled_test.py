@@ -32,7 +32,7 @@ class CompiledModelTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.model = shipped("cart_pendulum")
-        functions = ["jac", "jac_u", "jac_p", "mass", "momenta", "taylor"]
+        functions = ["jac", "jac_u", "jac_p", "mass", "momenta", "energy_gradients", "taylor"]
         cls.f = cls.model.compile(functions=functions, outputs="all")
 
     def states(self, count):
@@ -100,6 +100,40 @@ class CompiledModelTest(unittest.TestCase):
         np.testing.assert_allclose(np.linalg.solve(mass, -bias), self.f.rhs(0.0, x)[2:], rtol=1e-12)
         momenta, _ = self.f.momenta(0.0, x)
         np.testing.assert_allclose(momenta, mass @ x[2:], rtol=1e-13)
+        energies, dT, dU = self.f.energy_gradients(0.0, x)
+        np.testing.assert_allclose(energies, [x[2:] @ mass @ x[2:] / 2, -m * g * l * np.cos(x[1])], rtol=1e-13)
+        np.testing.assert_allclose(dT[2:], momenta, rtol=1e-13)
+        np.testing.assert_allclose(dT[:2], [0, -m * l * x[2] * x[3] * np.sin(x[1])], rtol=1e-13)
+        np.testing.assert_allclose(dU, [0, m * g * l * np.sin(x[1])], rtol=1e-13)
+
+    def test_frames_have_poses_jacobians_and_biases(self):
+        f = shipped("R10_lagrange_top").compile(functions=["frames"])
+        n, states = f.coordinate_count, np.random.default_rng(2).uniform(0.3, 1.2, (5, len(f.state_names)))
+        self.assertTrue(f.frame_names)
+        many = f.frames(0.0, states)
+        for name in f.frame_names:
+            x, d = states[3], 1e-6
+            frame = f.frames(0.0, x)[name]
+            shapes = [part.shape for part in frame]
+            self.assertEqual(shapes, [(3,), (3, 3), (6, n), (6,)])
+            self.assertEqual([part.shape for part in many[name]], [(5,) + shape for shape in shapes])
+            for one, part in zip(frame, many[name]):
+                np.testing.assert_array_equal(part[3], one)
+            np.testing.assert_allclose(frame.rotation.T @ frame.rotation, np.eye(3), atol=1e-14)
+            np.testing.assert_allclose(np.linalg.det(frame.rotation), 1)
+            for j in range(n):
+                step = d * np.eye(len(x))[j]
+                up, down = f.frames(0.0, x + step)[name], f.frames(0.0, x - step)[name]
+                slope = (up.position - down.position) / (2 * d)
+                np.testing.assert_allclose(frame.jacobian[:3, j], slope, atol=1e-8)
+                spin = (up.rotation - down.rotation) @ frame.rotation.T / (2 * d)
+                np.testing.assert_allclose(frame.jacobian[3:, j], [spin[2, 1], spin[0, 2], spin[1, 0]], atol=1e-8)
+            # At qddot = 0 the acceleration is the bias.
+            ahead = np.concatenate([x[n : 2 * n], np.zeros(n)])
+            rates = [f.frames(0.0, x + h * ahead)[name].jacobian @ x[n : 2 * n] for h in (d, -d)]
+            np.testing.assert_allclose(frame.bias, (rates[0] - rates[1]) / (2 * d), atol=1e-7)
+        with self.assertRaises(eomgen.Error):
+            self.f.frames(0.0, self.states(1)[0])
 
     def test_constraints_and_their_forces(self):
         f = shipped("S5_double_pendulum_pfaffian").compile(approach="I")

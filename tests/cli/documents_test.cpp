@@ -73,8 +73,8 @@ TEST_CASE("derive: one key per kind of formula, in three formats") {
       CHECK_FALSE(shown["equations"].empty());
     }
   }
-  for (const char* key : {"kinematics", "basis", "metric", "christoffel", "line_element", "energies", "lagrangian",
-                          "constraints", "singular", "solved", "contravariant"}) {
+  for (const char* key : {"kinematics", "regressor", "basis", "metric", "christoffel", "line_element", "energies",
+                          "lagrangian", "constraints", "singular", "solved", "contravariant"}) {
     CAPTURE(key);
     const Json shown = document(folder, {"derive", "P7_moving_sphere", "--show", key});
     has_keys(shown, {key, "equations", "reactions"});

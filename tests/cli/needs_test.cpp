@@ -87,6 +87,8 @@ TEST_CASE("needs: a requested function adds its symbol and does not change the r
                                         {{"--with", "coriolis"}, "coriolis"},
                                         {{"--with", "gravity"}, "gravity"},
                                         {{"--with", "mass"}, "mass"},
+                                        {{"--with", "energy_gradients"}, "energy_gradients"},
+                                        {{"--with", "frames"}, "frames"},
                                         {{"--with", "constraints"}, "constraints"},
                                         {{"--output", "energy"}, "outputs"}}) {
     const auto& shown = function;

@@ -142,7 +142,8 @@ const std::vector<Words>& derive_calls() {
        "text"},
       {"verify", "--no-compile", "--points", "3", "--json"},
       {"emit", "-o", "OUT", "--with",
-       "jac,jac_p,jac_u,jvp,vjp,adjoint,hvp,inverse,coriolis,gravity,mass,constraints,reactions,outputs,events,energy",
+       "jac,jac_p,jac_u,jvp,vjp,adjoint,hvp,inverse,coriolis,gravity,mass,energy_gradients,frames,constraints,"
+       "reactions,outputs,events,energy",
        "--json"},
       {"emit", "-o", "OUT", "--target", "python", "--approach", "I", "--json"},
       {"emit", "-o", "OUT", "--target", "latex", "--json"},

@@ -38,9 +38,10 @@ std::vector<std::string> names(const std::vector<Quantity>& list) {
 TEST_CASE("library: compiled functions of a driven pendulum have their values, in both tiers") {
   const Model model = Model::from(driven_pendulum(), "driven");
   for (const char* tier : {"compiled", "auto"}) {
-    const CompiledModel f = model.compile(
-        {.tier = tier,
-         .functions = std::vector<std::string>{"jac", "jac_p", "jac_u", "mass", "momenta", "events", "taylor"}});
+    const CompiledModel f =
+        model.compile({.tier = tier,
+                       .functions = std::vector<std::string>{"jac", "jac_p", "jac_u", "mass", "momenta", "events",
+                                                             "energy_gradients", "frames", "taylor"}});
     CHECK(names(f.states()) == std::vector<std::string>{"q", "q_dot"});
     CHECK(names(f.parameters()) == std::vector<std::string>{"k", "k2"});
     CHECK(names(f.inputs()) == std::vector<std::string>{"u"});
@@ -82,6 +83,14 @@ TEST_CASE("library: compiled functions of a driven pendulum have their values, i
           doctest::Approx(0.5 * x[1] * x[1] - 4 * std::cos(q)).epsilon(1e-14));
     REQUIRE(f.events(at, g.data()) == 0);
     CHECK(g == std::vector<double>{q});
+    double energies[2], dT[2], dU[1];
+    REQUIRE(f.energy_gradients(at, energies, dT, dU) == 0);
+    CHECK(energies[0] == doctest::Approx(x[1] * x[1] / 2).epsilon(1e-15));
+    CHECK(dT[0] == 0);
+    CHECK(dT[1] == x[1]);
+    CHECK(dU[0] == doctest::Approx(4 * std::sin(q)).epsilon(1e-15));
+    CHECK(f.frames().empty());  // its energies have no positions
+    CHECK(f.frames(at, nullptr, nullptr, nullptr) == 0);
     REQUIRE(f.taylor(at, 2, c.data()) == 0);
     CHECK(c[4] == doctest::Approx(dx[1] / 2).epsilon(1e-15));
 

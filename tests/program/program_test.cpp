@@ -120,8 +120,8 @@ TEST_CASE("program: unknown functions and outputs are rejected by name") {
   };
   CHECK(message({"rhs_batch"}, {}) ==
         "there is no function `rhs_batch` / available functions: jac, jac_p, jac_u, jvp, vjp, adjoint, hvp, inverse, "
-        "coriolis, gravity, mass, momenta, constraints, "
-        "reactions, outputs, events, contact_rows, resets, taylor");
+        "coriolis, gravity, mass, momenta, energy_gradients, constraints, "
+        "reactions, outputs, events, contact_rows, resets, frames, taylor");
   CHECK(message({"jacobian"}, {}).starts_with("there is no function `jacobian`"));
   CHECK(message({}, {"energie"}) == "there is no output `energie` / outputs of this model: energy, kinetic, potential");
 }

@@ -186,7 +186,8 @@ Subject subject(const std::string& model) {
       pipeline::ApproachChoice::automatic);
   program::Request request;
   request.with = {"jac",      "jac_p",   "jac_u", "jvp",     "vjp",         "adjoint",   "hvp",    "inverse",
-                  "coriolis", "gravity", "mass",  "momenta", "constraints", "reactions", "events", "taylor"};
+                  "coriolis", "gravity", "mass",  "momenta", "constraints", "reactions", "events", "energy_gradients",
+                  "frames",   "taylor"};
   request.outputs = {"energy", "kinetic", "power"};
   for (const system::Output& output : s.derived->candidates.front().outputs) {
     if (output.name.find("position") != std::string::npos || output.name.find("velocity") != std::string::npos)

@@ -92,6 +92,10 @@ std::string heading_of(const print::PrintedFormula& item) {
   if (item.key == "solved") return solved_heading(item);
   if (item.key == "forces") return fmt::format("'{}', {}", item.name, item.role);
   if (item.key == "kinematics") return fmt::format("'{}', {}", item.name, item.role);
+  if (item.key == "regressor")
+    return item.name.empty() ? item.key
+                             : fmt::format("'{}', {}{}", item.name, item.role,
+                                           item.coordinate.empty() ? "" : ", equation of " + item.coordinate);
   if (item.key == "parts") return "where";
   if (item.key == "states") return "states of first order";
   if (item.key == "resets") return fmt::format("new values at {} '{}', from those before", item.role, item.name);

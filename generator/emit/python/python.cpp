@@ -17,10 +17,11 @@ namespace eomgen::emit {
 namespace {
 
 // Functions that the module wraps.
-constexpr const char* wrapped_functions[] = {"rhs",     "jac",     "jac_p",        "jac_u",       "jvp",
-                                             "vjp",     "adjoint", "hvp",          "inverse",     "coriolis",
-                                             "gravity", "mass",    "momenta",      "constraints", "reactions",
-                                             "outputs", "events",  "contact_rows", "resets",      "taylor"};
+constexpr const char* wrapped_functions[] = {
+    "rhs",       "jac",     "jac_p",    "jac_u",        "jvp",    "vjp",     "adjoint",
+    "hvp",       "inverse", "coriolis", "gravity",      "mass",   "momenta", "constraints",
+    "reactions", "outputs", "events",   "contact_rows", "resets", "frames",  "energy_gradients",
+    "taylor"};
 
 /// _rhs = _function("rhs", "daaaia"): one letter per argument type.
 std::string c_function_declarations() {
