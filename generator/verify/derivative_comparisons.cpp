@@ -248,8 +248,8 @@ class DerivativeComparison {
     const Numbers M = symbolic::evaluate(*g_.system.dag, g_.system.M, g_.symbols, g_.oracle.digits());
     for (std::size_t i = 0; i < n_; ++i) {
       for (std::size_t j = 0; j < n_; ++j)
-        size = size + cln::abs(M[i * n_ + j]) * (cln::abs(qdot[i]) + cln::abs(qdot[j])) *
-                          power_of_ten(-g_.table.digits());
+        size =
+            size + cln::abs(M[i * n_ + j]) * (cln::abs(qdot[i]) + cln::abs(qdot[j])) * power_of_ten(-g_.table.digits());
     }
     const int digits = step_digits();
     add(c, slope_along(g_.system.M, qdot, digits), b, 1);

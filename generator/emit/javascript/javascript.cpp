@@ -153,27 +153,15 @@ void require_known(const program::Program& program) {
                 "use the target c or cpp, or leave --with charts out");
 }
 
-/// The condition name === "mass" || name === "constraints" for functions without inputs and mode.
-std::string without_inputs() {
-  std::string condition;
-  for (const abi::Function& function : abi::functions()) {
-    if (function.availability != abi::Availability::on_request || function.has_input(abi::Input::inputs)) continue;
-    condition += fmt::format("{}name === \"{}\"", condition.empty() ? "" : " || ", function.name);
-  }
-  return condition;
-}
-
-/// The case of functions with the argument v in the self test; empty if there are none.
-std::string with_vector(const program::Program& program) {
-  std::string condition;
+/// The arguments of each function before its results, for the self test: { "rhs": ["t", "x", ..], .. }.
+std::string argument_table(const program::Program& program) {
+  Json table = Json::object();
   for (const program::Function& function : program.functions) {
-    if (program::vector_size(function.name, program) == 0) continue;
-    condition += fmt::format("{}name === \"{}\"", condition.empty() ? "" : " || ", function.name);
+    Json names = Json::array();
+    for (const abi::Input input : program::inputs_of(function.name)) names.push_back(abi::name(input));
+    table[function.name] = names;
   }
-  if (condition.empty()) return "";
-  return fmt::format(
-      " else if ({}) {{\n        code = functions[name](at.t, at.x, at.p, u, at.mode, at.v, ...got);\n      }}",
-      condition);
+  return literal(table);
 }
 
 }  // namespace
@@ -215,8 +203,7 @@ std::vector<EmittedFile> emit_javascript(const program::Program& program, const 
       {"array", array_of(dialect)},
       {"rounding", dialect.rounding_function.empty() ? "" : ", " + dialect.rounding_function},
       {"prepared", std::to_string(program.prepared_count())},
-      {"without_inputs", without_inputs()},
-      {"with_vector", with_vector(program)},
+      {"arguments", argument_table(program)},
       {"defaults_test", defaults_test(program, context, dialect)},
       {"vectors", vectors(program, context)}};
   return {{name + ".js", render_template(skeleton::javascript_model_js, values, functions)}};
