@@ -94,6 +94,28 @@ class CompiledModelTest(unittest.TestCase):
                 slope = (self.f.rhs(0.0, *up) - self.f.rhs(0.0, *down)) / (2 * d)
                 np.testing.assert_allclose(J[:, j], slope, rtol=1e-6, atol=1e-7, err_msg=function)
 
+    def test_products_are_those_of_the_matrices(self):
+        names = ["jac", "jac_p", "jac_u", "mass", "jvp", "vjp", "adjoint", "hvp", "inverse", "coriolis", "gravity"]
+        f = self.model.compile(functions=names)
+        X, u = self.states(5), np.array([0.4])
+        x, v, d = X[0], np.array([1.0, -2, 0.5, 3]), np.array([0.2, 1, -1, 0.7])
+        J = f.jac(0.0, x, u)
+        np.testing.assert_allclose(f.jvp(0.0, x, v, u), J @ v, rtol=1e-12)
+        np.testing.assert_allclose(f.vjp(0.0, x, v, inputs=u), v @ J, rtol=1e-12, atol=1e-13)
+        by_x, by_p, by_u = f.adjoint(0.0, x, v, u)
+        np.testing.assert_allclose(by_x, v @ J, rtol=1e-12, atol=1e-13)
+        np.testing.assert_allclose(by_p, v @ f.jac_p(0.0, x, u), rtol=1e-12, atol=1e-13)
+        np.testing.assert_allclose(by_u, v @ f.jac_u(0.0, x, u), rtol=1e-12)
+        slope = (f.vjp(0.0, x + 1e-6 * d, v, u) - f.vjp(0.0, x - 1e-6 * d, v, u)) / 2e-6
+        np.testing.assert_allclose(f.hvp(0.0, x, np.concatenate([v, d]), u), slope, rtol=1e-6, atol=1e-7)
+        M, h = f.mass(0.0, x)
+        np.testing.assert_allclose(f.inverse(0.0, x, [0.5, -1], [0.0]), M @ [0.5, -1] + h, rtol=1e-12)
+        np.testing.assert_allclose(f.gravity(0.0, x), [0, m * g * l * np.sin(x[1])], rtol=1e-13)
+        self.assertEqual(f.coriolis(0.0, x)[1].tolist(), [0, 0])
+        np.testing.assert_allclose(f.jvp(0.0, X, v, u)[3], f.jvp(0.0, X[3], v, u), rtol=1e-15)
+        with self.assertRaises(eomgen.Error):
+            f.jvp(0.0, x, v[:3])
+
     def test_mass_and_bias_give_the_accelerations(self):
         x = self.states(1)[0]
         mass, bias = self.f.mass(0.0, x)

@@ -41,7 +41,8 @@ TEST_CASE("library: compiled functions of a driven pendulum have their values, i
     const CompiledModel f =
         model.compile({.tier = tier,
                        .functions = std::vector<std::string>{"jac", "jac_p", "jac_u", "mass", "momenta", "events",
-                                                             "energy_gradients", "frames", "taylor"}});
+                                                             "energy_gradients", "frames", "taylor", "jvp", "vjp", "adjoint",
+                                                             "hvp", "inverse", "coriolis", "gravity"}});
     CHECK(names(f.states()) == std::vector<std::string>{"q", "q_dot"});
     CHECK(names(f.parameters()) == std::vector<std::string>{"k", "k2"});
     CHECK(names(f.inputs()) == std::vector<std::string>{"u"});
@@ -70,6 +71,27 @@ TEST_CASE("library: compiled functions of a driven pendulum have their values, i
     REQUIRE(f.jac_u(at, Ju) == 0);
     CHECK(Ju[0] == 0);
     CHECK(Ju[1] == 1);
+    const double v[] = {0.3, 2, 1.5, -0.5};
+    double Jv[2], vJ[2], vP[2], vU[1], Hd[2], tau[1], C[1], slope[1];
+    at.v = v;
+    REQUIRE(f.jvp(at, Jv) == 0);
+    CHECK(Jv[0] == 2);
+    CHECK(Jv[1] == doctest::Approx(-4 * std::cos(q) * 0.3).epsilon(1e-15));
+    REQUIRE(f.adjoint(at, vJ, vP, vU) == 0);
+    CHECK(vJ[0] == doctest::Approx(-4 * std::cos(q) * 2).epsilon(1e-15));
+    CHECK(vJ[1] == 0.3);
+    CHECK(vP[0] == doctest::Approx(-std::sin(q) * 2).epsilon(1e-15));
+    CHECK(vU[0] == 2);
+    REQUIRE(f.vjp(at, Jv) == 0);
+    CHECK(Jv[0] == vJ[0]);
+    REQUIRE(f.hvp(at, Hd) == 0);
+    CHECK(Hd[0] == doctest::Approx(4 * std::sin(q) * 2 * 1.5).epsilon(1e-15));
+    REQUIRE(f.inverse(at, tau) == 0);
+    CHECK(tau[0] == doctest::Approx(0.3 + 4 * std::sin(q) - 0.5).epsilon(1e-15));
+    REQUIRE(f.coriolis(at, C) == 0);
+    CHECK(C[0] == 0);
+    REQUIRE(f.gravity(at, slope) == 0);
+    CHECK(slope[0] == doctest::Approx(4 * std::sin(q)).epsilon(1e-15));
     REQUIRE(f.mass(at, M, h) == 0);
     CHECK(M[0] == 1);
     CHECK(h[0] == doctest::Approx(4 * std::sin(q) - 0.5).epsilon(1e-15));
