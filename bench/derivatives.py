@@ -107,7 +107,7 @@ def row(eomgen, compiler, what, robots, folder):
     source = (folder / f"{name}.c").read_text()
     compiling, _, _, _ = measured([compiler, "-O2", "-c", "-o", folder / "model.o", folder / f"{name}.c"])
     header = (folder / f"{name}.h").read_text()
-    states, parameters = (int(re.search(rf"{name}_{what} = (\d+)", header).group(1)) for what in ("state_count", "parameter_count"))
+    states, parameters = (int(re.search(rf"{name}_{size} = (\d+)", header).group(1)) for size in ("states", "parameters"))
     values = {"NAME": name, "STATES": states, "PARAMETERS": parameters, "SPREAD": spread, "CALLS": max(20, 200_000 // states**2)}
     driver = DRIVER
     for key, value in values.items():
