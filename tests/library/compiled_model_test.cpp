@@ -41,8 +41,8 @@ TEST_CASE("library: compiled functions of a driven pendulum have their values, i
     const CompiledModel f =
         model.compile({.tier = tier,
                        .functions = std::vector<std::string>{"jac", "jac_p", "jac_u", "mass", "momenta", "events",
-                                                             "energy_gradients", "frames", "taylor", "jvp", "vjp", "adjoint",
-                                                             "hvp", "inverse", "coriolis", "gravity"}});
+                                                             "energy_gradients", "frames", "taylor", "jvp", "vjp",
+                                                             "adjoint", "hvp", "inverse", "coriolis", "gravity"}});
     CHECK(names(f.states()) == std::vector<std::string>{"q", "q_dot"});
     CHECK(names(f.parameters()) == std::vector<std::string>{"k", "k2"});
     CHECK(names(f.inputs()) == std::vector<std::string>{"u"});

@@ -13,7 +13,7 @@ namespace {
 
 using Numbers = std::vector<cln::cl_R>;
 
-constexpr int digits = 60;
+constexpr int product_digits = 60;
 
 Numbers vector_of(std::size_t size, long first) {
   Numbers result;
@@ -50,12 +50,14 @@ TEST_CASE("derivative products: they are products with the Jacobian, by either w
     const auto at = arguments_at<cln::cl_R>(system, 1);
     const Numbers v(at.v.begin(), at.v.begin() + static_cast<std::ptrdiff_t>(states));
     const auto derivatives = build(system, {"jac", "jac_p"});
-    const Numbers jac = program::interpret(derivatives.functions[1], at, digits).results[0],
-                  jac_p = program::interpret(derivatives.functions[2], at, digits).results[0];
+    const Numbers jac = program::interpret(derivatives.functions[1], at, product_digits).results[0],
+                  jac_p = program::interpret(derivatives.functions[2], at, product_digits).results[0];
     for (const bool optimise : {false, true}) {
       CAPTURE(optimise);
       const auto built = build(system, {"jvp", "vjp", "adjoint"}, optimise);
-      const auto values = [&](std::size_t k) { return program::interpret(built.functions[k], at, digits).results; };
+      const auto values = [&](std::size_t k) {
+        return program::interpret(built.functions[k], at, product_digits).results;
+      };
       CHECK(difference(values(1)[0], times(jac, v)) < tolerances::same_value);
       CHECK(difference(values(2)[0], times_columns(v, jac)) < tolerances::same_value);
       CHECK(difference(values(3)[0], times_columns(v, jac)) < tolerances::same_value);
@@ -82,7 +84,7 @@ TEST_CASE("derivative products: hvp is symmetric, and the slope of vjp") {
     const auto hessian = [&](const Numbers& direction) {
       at.v = c;
       at.v.insert(at.v.end(), direction.begin(), direction.end());
-      return program::interpret(built.functions[2], at, digits).results[0];
+      return program::interpret(built.functions[2], at, product_digits).results[0];
     };
     CHECK(difference(times_columns(e, hessian(d)), times_columns(d, hessian(e))) < tolerances::same_value);
     const Numbers got = hessian(d);
@@ -90,7 +92,7 @@ TEST_CASE("derivative products: hvp is symmetric, and the slope of vjp") {
     const auto moved = [&](const cln::cl_R& h) {
       auto there = at;
       for (std::size_t i = 0; i < states; ++i) there.x[i] = there.x[i] + h * d[i];
-      return program::interpret(built.functions[1], there, digits).results[0];
+      return program::interpret(built.functions[1], there, product_digits).results[0];
     };
     Numbers slope = moved(step);
     const Numbers below = moved(-step);
@@ -104,11 +106,11 @@ TEST_CASE("derivative products: inverse dynamics of the accelerations is what co
     const std::size_t n = system.free.size();
     auto at = arguments_at<cln::cl_R>(system, 1);
     const auto built = build(system, {"inverse", "constraints", "reactions"});
-    const Numbers dx = program::interpret(built.functions[0], at, digits).results[0];
+    const Numbers dx = program::interpret(built.functions[0], at, product_digits).results[0];
     at.v.assign(dx.begin() + static_cast<std::ptrdiff_t>(n), dx.begin() + static_cast<std::ptrdiff_t>(2 * n));
-    const Numbers tau = program::interpret(built.functions[1], at, digits).results[0];
-    const auto constraints = program::interpret(built.functions[2], at, digits).results;
-    Numbers lambda = program::interpret(built.functions[3], at, digits).results[0];
+    const Numbers tau = program::interpret(built.functions[1], at, product_digits).results[0];
+    const auto constraints = program::interpret(built.functions[2], at, product_digits).results;
+    Numbers lambda = program::interpret(built.functions[3], at, product_digits).results[0];
     Numbers forces(n, cln::cl_R(0));
     if (!lambda.empty()) forces = times_columns(lambda, constraints[1]);
     cln::cl_R largest = 1;
@@ -123,14 +125,14 @@ TEST_CASE("derivative products: dM/dt - 2 C is skew, and C qdot with the gradien
   const std::size_t n = system.free.size();
   const auto at = arguments_at<cln::cl_R>(system, 2);
   const auto built = build(system, {"coriolis", "gravity", "mass"});
-  const Numbers C = program::interpret(built.functions[1], at, digits).results[0],
-                g = program::interpret(built.functions[2], at, digits).results[0];
+  const Numbers C = program::interpret(built.functions[1], at, product_digits).results[0],
+                g = program::interpret(built.functions[2], at, product_digits).results[0];
   const Numbers qdot(at.x.begin() + static_cast<std::ptrdiff_t>(n), at.x.end());
   const cln::cl_R step = cln::expt(cln::cl_RA(10), -15);
   const auto mass_at = [&](const cln::cl_R& h) {
     auto there = at;
     for (std::size_t i = 0; i < n; ++i) there.x[i] = there.x[i] + h * qdot[i];
-    return program::interpret(built.functions[3], there, digits).results;
+    return program::interpret(built.functions[3], there, product_digits).results;
   };
   const Numbers high = mass_at(step)[0], low = mass_at(-step)[0], h = mass_at(0)[1];
   Numbers slope, both;
