@@ -243,6 +243,7 @@ bool differ(const verify::CompiledForm& a, const verify::CompiledForm& b, const 
     for (const emit::Quantity& p : s.context.parameters)
       at.p.push_back(numeric::exact(p.value) * (1 + random() / 4) + (p.value == 0 ? random() : cln::cl_RA(0)));
     for (const emit::Quantity& u : s.context.inputs) at.u.push_back(numeric::exact(u.value) + random());
+    for (std::size_t i = 0; i < 2 * at.x.size(); ++i) at.v.push_back(random() + 2);
     for (const std::string& function : program::abi_function_names(s.program)) {
       const auto of_a = a.call(function, at), of_b = b.call(function, at);
       if (of_a.has_value() != of_b.has_value()) return true;
