@@ -260,10 +260,13 @@ class Derivatives {
       if (is_product(name)) add(*functions, Differentiate::solution);
     }
     const std::size_t least = *std::min_element(costs.begin(), costs.end());
+    // Products have twice as many ways, whose costs are in the order of those after optimisation: only the cheapest is
+    // optimised.
+    const double largest = (is_product(name) ? 1 : max_cost_ratio) * static_cast<double>(least);
     std::optional<PolynomialGraph> best;
     std::size_t best_cost = 0, which = 0;
     for (std::size_t i = 0; i < wanted.size(); ++i) {
-      if (static_cast<double>(costs[i]) > max_cost_ratio * static_cast<double>(least)) continue;
+      if (static_cast<double>(costs[i]) > largest) continue;
       PolynomialGraph graph = optimised(starts(raw[i]));
       const std::size_t cost = count_operations(graph).cost();
       if (best && cost >= best_cost) continue;

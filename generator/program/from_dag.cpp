@@ -21,30 +21,34 @@ class Conversion {
     std::vector<Ref> roots;
     for (const auto& result : wanted.results) roots.insert(roots.end(), result.entries.begin(), result.entries.end());
     for (const Pivot& pivot : wanted.pivots) roots.insert(roots.end(), {pivot.pivot, pivot.scale});
-    value_.resize(dag_.size());
-    known_.assign(dag_.size(), false);
-    for (const Ref r : dag_.reachable(roots)) {
-      value_[r.id] = convert(r);
-      known_[r.id] = true;
+    // The Dag holds the expressions of all functions, of which one needs few: terms are large.
+    const std::vector<Ref> needed = dag_.reachable(roots);
+    place_.assign(dag_.size(), unknown);
+    values_.reserve(needed.size());
+    for (const Ref r : needed) {
+      values_.push_back(convert(r));
+      place_[r.id] = static_cast<std::uint32_t>(values_.size() - 1);
     }
     for (const auto& result : wanted.results) {
-      for (const Ref r : result.entries) graph_.results.push_back(value_[r.id]);
+      for (const Ref r : result.entries) graph_.results.push_back(value(r));
     }
-    for (const Pivot& pivot : wanted.pivots) {
-      graph_.pivots.push_back({value_[pivot.pivot.id], value_[pivot.scale.id]});
-    }
+    for (const Pivot& pivot : wanted.pivots) graph_.pivots.push_back({value(pivot.pivot), value(pivot.scale)});
     for (const LabelledExpression& label : wanted.labels) {
-      if (known_[label.value.id]) graph_.labels.push_back({value_[label.value.id], label.name, label.section});
+      if (place_[label.value.id] != unknown)
+        graph_.labels.push_back({value(label.value), label.name, label.section});
     }
     return std::move(graph_);
   }
 
  private:
+  static constexpr std::uint32_t unknown = static_cast<std::uint32_t>(-1);
+
+  const Term& value(Ref r) const { return values_[place_[r.id]]; }
   Term node(NodeId id) const { return {1, {{id, 1}}}; }
 
   Term convert(Ref r) {
     const symbolic::Node& node_of_dag = dag_[r];
-    const auto arg = [&](std::size_t i) -> const Term& { return value_[node_of_dag.args[i].id]; };
+    const auto arg = [&](std::size_t i) -> const Term& { return value(node_of_dag.args[i]); };
     const auto negated = [](Term term) {
       term.coefficient = -term.coefficient;
       return term;
@@ -111,8 +115,8 @@ class Conversion {
   const std::vector<std::uint32_t>& free_;
   const std::vector<symbolic::Symbol>& states_;
   PolynomialGraph graph_;
-  std::vector<Term> value_;
-  std::vector<bool> known_;
+  std::vector<Term> values_;
+  std::vector<std::uint32_t> place_;  // of each node of the Dag in values_
 };
 
 /// The summands of a value; the value itself if it is not a sum.

@@ -20,31 +20,45 @@ namespace {
 using symbolic::Ref;
 
 constexpr const char* differences = "differences of dx";
+constexpr std::size_t across_direction = 3, coriolis_left = 4, coriolis_right = 1;  // first components of directions
 
-class DerivativeComparison {
+}  // namespace
+
+class DerivativeComparisons::Comparison {
  public:
-  explicit DerivativeComparison(const FunctionAt& given) : g_(given), n_(given.system.free.size()) {}
+  Comparison(const ProgramForm& program, const system::EquationSystem& system, const Oracle& oracle,
+             const SymbolValues& symbols, const AbiArguments& at, ComparisonTable& table)
+      : program_(program),
+        system_(system),
+        oracle_(oracle),
+        symbols_(symbols),
+        at_(at),
+        table_(table),
+        n_(system.free.size()) {}
 
-  using Check = void (DerivativeComparison::*)();
-  static const std::map<std::string_view, Check>& checks() {
-    static const std::map<std::string_view, Check> table{
-        {"jac", &DerivativeComparison::jac},           {"jac_p", &DerivativeComparison::jac_p},
-        {"jac_u", &DerivativeComparison::jac_u},       {"jvp", &DerivativeComparison::jvp},
-        {"vjp", &DerivativeComparison::vjp},           {"adjoint", &DerivativeComparison::adjoint},
-        {"hvp", &DerivativeComparison::hvp},           {"inverse", &DerivativeComparison::inverse},
-        {"coriolis", &DerivativeComparison::coriolis}, {"gravity", &DerivativeComparison::gravity}};
-    return table;
+  bool operator()(const std::string& function, const AbiResults& values, const AbiResults& sizes) {
+    static const std::map<std::string_view, void (Comparison::*)()> checks{
+        {"jac", &Comparison::jac},        {"jac_p", &Comparison::jac_p},     {"jac_u", &Comparison::jac_u},
+        {"jvp", &Comparison::jvp},        {"vjp", &Comparison::vjp},         {"adjoint", &Comparison::adjoint},
+        {"hvp", &Comparison::hvp},        {"inverse", &Comparison::inverse}, {"coriolis", &Comparison::coriolis},
+        {"gravity", &Comparison::gravity}};
+    const auto found = checks.find(function);
+    if (found == checks.end()) return false;
+    values_ = &values;
+    sizes_ = &sizes;
+    (this->*found->second)();
+    return true;
   }
 
  private:
   using Numbers = std::vector<Real>;
 
   void note(const std::string& function, const char* against, double difference) {
-    g_.table.record(function + " of " + g_.program.name, against, true, difference);
+    table_.record(function + " of " + program_.name, against, true, difference);
   }
 
   /// Steps of differences are small relative to 1/range: with rates of 1e300 a time of 1e-50 is long.
-  int step_digits() const { return g_.oracle.digits() - guard_digits; }
+  int step_digits() const { return oracle_.digits() - guard_digits; }
 
   /// A direction without zero components; of parameters, relative to their values.
   static Numbers direction(std::size_t size, std::size_t first = 0) {
@@ -53,9 +67,9 @@ class DerivativeComparison {
     return result;
   }
   Numbers direction_of_parameters() const {
-    Numbers result = direction(g_.at.p.size());
+    Numbers result = direction(at_.p.size());
     for (std::size_t j = 0; j < result.size(); ++j) {
-      if (!cln::zerop(g_.at.p[j])) result[j] = result[j] * cln::rational(g_.at.p[j]);
+      if (!cln::zerop(at_.p[j])) result[j] = result[j] * cln::rational(at_.p[j]);
     }
     return result;
   }
@@ -64,35 +78,43 @@ class DerivativeComparison {
     for (std::size_t j = 0; j < direction.size(); ++j) values[j] = values[j] + step * direction[j];
   }
 
-  std::optional<CentralDifference> slope(Numbers AbiArguments::*part, const Numbers& direction) const {
-    return central_difference(
-        g_.program, "rhs", g_.at, [&](AbiArguments& at, const Real& step) { move(at.*part, direction, step); },
-        step_digits());
+  /// The differences of the right-hand side along a direction.
+  const std::optional<CentralDifference>& slope(Numbers AbiArguments::*part, std::size_t first = 0) {
+    const auto key = std::pair{part == &AbiArguments::x ? 0 : part == &AbiArguments::p ? 1 : 2, first};
+    const auto found = slopes_.find(key);
+    if (found != slopes_.end()) return found->second;
+    const Numbers along = part == &AbiArguments::p ? direction_of_parameters() : direction((at_.*part).size(), first);
+    return slopes_
+        .emplace(key, central_difference(
+                          program_, "rhs", at_,
+                          [&](AbiArguments& at, const Real& step) { move(at.*part, along, step); }, step_digits()))
+        .first->second;
   }
 
   /// The rounding error of differences of the right-hand side; empty where it has no value.
-  Numbers noise() const {
-    const std::optional<AbiResults> rhs = g_.program.call("rhs", g_.at, g_.oracle.digits());
-    if (!rhs) return {};
-    const AbiResults size = value_sizes(g_.program, "rhs", g_.at, *rhs, g_.oracle);
-    Numbers result;
-    if (size.empty()) return result;
-    for (const Real& one : size[0]) result.push_back(one * power_of_ten(-g_.table.digits()));
-    return result;
+  const Numbers& noise() {
+    if (noise_) return *noise_;
+    noise_.emplace();
+    const std::optional<AbiResults> rhs = program_.call("rhs", at_, oracle_.digits());
+    if (!rhs) return *noise_;
+    const AbiResults size = value_sizes(program_, "rhs", at_, *rhs, oracle_);
+    if (size.empty()) return *noise_;
+    for (const Real& one : size[0]) noise_->push_back(one * power_of_ten(-table_.digits()));
+    return *noise_;
   }
 
   /// Compares the columns of array `r`, times the components of a direction, with the central difference along it.
   void along(const std::string& name, std::size_t r, const Numbers& direction,
              const std::optional<CentralDifference>& slope) {
-    const Numbers lost = noise();
+    const Numbers& lost = noise();
     if (!slope || lost.empty()) return;
     const std::size_t rows = lost.size();
     double largest = 0;
     for (std::size_t i = 0; i < rows; ++i) {
       Real sum = 0, size = lost[i] + slope->errors[0][i];
       for (std::size_t j = 0; j < direction.size(); ++j) {
-        sum = sum + g_.values[r][i + rows * j] * direction[j];
-        size = size + g_.sizes[r][i + rows * j] * cln::abs(direction[j]);
+        sum = sum + (*values_)[r][i + rows * j] * direction[j];
+        size = size + (*sizes_)[r][i + rows * j] * cln::abs(direction[j]);
       }
       largest = std::max(largest, relative_difference(sum - slope->values[0][i], size));
     }
@@ -100,70 +122,59 @@ class DerivativeComparison {
   }
 
   void jac() {
-    const Numbers d = direction(g_.at.x.size());
-    along("jac", 0, d, slope(&AbiArguments::x, d));
+    along("jac", 0, direction(at_.x.size()), slope(&AbiArguments::x));
     along("df/dt", 1, {Real(1)},
           central_difference(
-              g_.program, "rhs", g_.at, [](AbiArguments& at, const Real& h) { at.t = at.t + h; }, step_digits()));
+              program_, "rhs", at_, [](AbiArguments& at, const Real& h) { at.t = at.t + h; }, step_digits()));
   }
-  void jac_p() {
-    const Numbers d = direction_of_parameters();
-    along("jac_p", 0, d, slope(&AbiArguments::p, d));
-  }
-  void jac_u() {
-    const Numbers d = direction(g_.at.u.size());
-    along("jac_u", 0, d, slope(&AbiArguments::u, d));
-  }
+  void jac_p() { along("jac_p", 0, direction_of_parameters(), slope(&AbiArguments::p)); }
+  void jac_u() { along("jac_u", 0, direction(at_.u.size()), slope(&AbiArguments::u)); }
 
-  /// One column: the product with v.
-  void jvp() {
-    const Numbers d(g_.at.v.begin(), g_.at.v.begin() + static_cast<std::ptrdiff_t>(g_.at.x.size()));
-    along("jvp", 0, {Real(1)}, slope(&AbiArguments::x, d));
-  }
+  /// One column: the product with v, which begins with the direction of `jac` (arguments_at).
+  void jvp() { along("jvp", 0, {Real(1)}, slope(&AbiArguments::x)); }
 
   /// Compares array `r` times a direction with v times the difference of dx along it.
   void across(const std::string& name, std::size_t r, const Numbers& direction,
               const std::optional<CentralDifference>& slope) {
-    const Numbers lost = noise();
+    const Numbers& lost = noise();
     if (!slope || lost.empty()) return;
     Real sum = 0, size = 0;
     for (std::size_t j = 0; j < direction.size(); ++j) {
-      sum = sum + g_.values[r][j] * direction[j];
-      size = size + g_.sizes[r][j] * cln::abs(direction[j]);
+      sum = sum + (*values_)[r][j] * direction[j];
+      size = size + (*sizes_)[r][j] * cln::abs(direction[j]);
     }
     for (std::size_t i = 0; i < lost.size(); ++i) {
-      const Real& weight = g_.at.v[i];
+      const Real& weight = at_.v[i];
       sum = sum - weight * slope->values[0][i];
       size = size + cln::abs(weight) * (lost[i] + slope->errors[0][i] + cln::abs(slope->values[0][i]));
     }
     note(name, differences, relative_difference(sum, size));
   }
 
-  void vjp() {
-    const Numbers d = direction(g_.at.x.size(), 3);
-    across("vjp", 0, d, slope(&AbiArguments::x, d));
+  void across_states(const std::string& name) {
+    across(name, 0, direction(at_.x.size(), across_direction), slope(&AbiArguments::x, across_direction));
   }
+  void vjp() { across_states("vjp"); }
   void adjoint() {
-    const Numbers d = direction(g_.at.x.size(), 3), of_p = direction_of_parameters(), of_u = direction(g_.at.u.size());
-    across("adjoint", 0, d, slope(&AbiArguments::x, d));
-    across("adjoint by p", 1, of_p, slope(&AbiArguments::p, of_p));
-    across("adjoint by u", 2, of_u, slope(&AbiArguments::u, of_u));
+    across_states("adjoint");
+    across("adjoint by p", 1, direction_of_parameters(), slope(&AbiArguments::p));
+    across("adjoint by u", 2, direction(at_.u.size()), slope(&AbiArguments::u));
   }
 
   /// d^2(c^T f) along the direction d of v and another one, e, by differences with steps h and 2 h.
   void hvp() {
-    const std::size_t states = g_.at.x.size();
+    const std::size_t states = at_.x.size();
     const int digits = step_digits(), more = 4 * digits + 10;
     const Precision precision(more);
-    const AbiArguments here = with_digits(g_.at, precision);
+    const AbiArguments here = with_digits(at_, precision);
     const Numbers d(here.v.begin() + static_cast<std::ptrdiff_t>(states),
                     here.v.begin() + static_cast<std::ptrdiff_t>(2 * states)),
-        e = direction(states, 3);
+        e = direction(states, across_direction);
     const auto weighted = [&](const Real& along_d, const Real& along_e) -> std::optional<Real> {
       AbiArguments at = here;
       move(at.x, d, along_d);
       move(at.x, e, along_e);
-      const std::optional<AbiResults> rhs = g_.program.call("rhs", at, more);
+      const std::optional<AbiResults> rhs = program_.call("rhs", at, more);
       if (!rhs) return std::nullopt;
       Real sum = 0;
       for (std::size_t i = 0; i < states; ++i) sum = sum + here.v[i] * (*rhs)[0][i];
@@ -177,31 +188,35 @@ class DerivativeComparison {
     const Real h = precision.round(power_of_ten(-digits));
     const std::optional<Real> near = mixed(h), far = mixed(2 * h);
     if (!near || !far) return;
-    Real sum = 0, size = cln::abs(*near - *far) * power_of_ten(g_.table.digits()) + cln::abs(*near);
+    const Numbers& lost = noise();
+    if (lost.empty()) return;
+    // The truncation error of `near` is a third of the difference; the digits compared take it as it is.
+    Real sum = 0, size = cln::abs(*near - *far) * power_of_ten(table_.digits()) + cln::abs(*near);
     for (std::size_t j = 0; j < states; ++j) {
-      sum = sum + g_.values[0][j] * e[j];
-      size = size + g_.sizes[0][j] * cln::abs(e[j]);
+      size = size + cln::abs(here.v[j]) * lost[j];
+      sum = sum + (*values_)[0][j] * e[j];
+      size = size + (*sizes_)[0][j] * cln::abs(e[j]);
     }
     note("hvp", "second differences of dx", relative_difference(sum - *near, size));
   }
 
   /// The entries of M and f without friction, with the inputs of `at`.
   SymbolValues without_friction() const {
-    SymbolValues symbols = g_.symbols;
+    SymbolValues symbols = symbols_;
     std::fill(symbols.state.phi.begin(), symbols.state.phi.end(), Real(0));
     return symbols;
   }
 
   void inverse() {
-    const int digits = g_.oracle.digits(), more = digits + 20;
+    const int digits = oracle_.digits(), more = digits + 20;
     const SymbolValues symbols = without_friction();
-    const Numbers M = symbolic::evaluate(*g_.system.dag, g_.system.M, symbols, more),
-                  f = symbolic::evaluate(*g_.system.dag, g_.system.f, symbols, more);
+    const Numbers M = symbolic::evaluate(*system_.dag, system_.M, symbols, more),
+                  f = symbolic::evaluate(*system_.dag, system_.f, symbols, more);
     double largest = 0;
     for (std::size_t i = 0; i < n_; ++i) {
-      Real sum = g_.values[0][i] + f[i], size = g_.sizes[0][i] + cln::abs(f[i]);
+      Real sum = (*values_)[0][i] + f[i], size = (*sizes_)[0][i] + cln::abs(f[i]);
       for (std::size_t j = 0; j < n_; ++j) {
-        const Real term = M[i * n_ + j] * g_.at.v[j];
+        const Real term = M[i * n_ + j] * at_.v[j];
         sum = sum - term;
         size = size + cln::abs(term);
       }
@@ -216,12 +231,12 @@ class DerivativeComparison {
     const Precision precision(more);
     const Real h = precision.round(power_of_ten(-digits));
     const auto at = [&](const Real& step) {
-      SymbolValues moved = g_.symbols;
+      SymbolValues moved = symbols_;
       for (std::size_t i = 0; i < n_; ++i) {
-        Real& q = moved.state.q[g_.system.free[i]];
+        Real& q = moved.state.q[system_.free[i]];
         q = precision.round(q) + step * direction[i];
       }
-      return symbolic::evaluate(*g_.system.dag, roots, moved, more);
+      return symbolic::evaluate(*system_.dag, roots, moved, more);
     };
     Numbers high = at(h);
     const Numbers low = at(-h);
@@ -231,9 +246,9 @@ class DerivativeComparison {
 
   /// c^T C b = (c^T D_qdot M b + c^T D_b M qdot - b^T D_c M qdot)/2 for two directions b and c.
   void coriolis() {
-    const Numbers b = direction(n_, 1), c = direction(n_, 4);
+    const Numbers b = direction(n_, coriolis_right), c = direction(n_, coriolis_left);
     Numbers qdot;
-    for (const std::uint32_t i : g_.system.free) qdot.push_back(to_exact(g_.symbols.state.qdot[i]));
+    for (const std::uint32_t i : system_.free) qdot.push_back(to_exact(symbols_.state.qdot[i]));
     Real expected = 0, size = 0;
     const auto add = [&](const Numbers& left, const Numbers& slope_of_M, const Numbers& right, int sign) {
       for (std::size_t i = 0; i < n_; ++i) {
@@ -245,43 +260,49 @@ class DerivativeComparison {
       }
     };
     // The slopes of a constant M, such as of sin^2 + cos^2, are rounding errors of M.
-    const Numbers M = symbolic::evaluate(*g_.system.dag, g_.system.M, g_.symbols, g_.oracle.digits());
+    const Numbers M = symbolic::evaluate(*system_.dag, system_.M, symbols_, oracle_.digits());
     for (std::size_t i = 0; i < n_; ++i) {
       for (std::size_t j = 0; j < n_; ++j)
         size =
-            size + cln::abs(M[i * n_ + j]) * (cln::abs(qdot[i]) + cln::abs(qdot[j])) * power_of_ten(-g_.table.digits());
+            size + cln::abs(M[i * n_ + j]) * (cln::abs(qdot[i]) + cln::abs(qdot[j])) * power_of_ten(-table_.digits());
     }
     const int digits = step_digits();
-    add(c, slope_along(g_.system.M, qdot, digits), b, 1);
-    add(c, slope_along(g_.system.M, b, digits), qdot, 1);
-    add(b, slope_along(g_.system.M, c, digits), qdot, -1);
+    add(c, slope_along(system_.M, qdot, digits), b, 1);
+    add(c, slope_along(system_.M, b, digits), qdot, 1);
+    add(b, slope_along(system_.M, c, digits), qdot, -1);
     Real sum = 0;
     for (std::size_t j = 0; j < n_; ++j) {
       for (std::size_t i = 0; i < n_; ++i) {
-        sum = sum + c[i] * g_.values[0][i + n_ * j] * b[j];
-        size = size + g_.sizes[0][i + n_ * j] * cln::abs(c[i] * b[j]);
+        sum = sum + c[i] * (*values_)[0][i + n_ * j] * b[j];
+        size = size + (*sizes_)[0][i + n_ * j] * cln::abs(c[i] * b[j]);
       }
     }
     note("coriolis", "differences of M", relative_difference(sum - expected, size));
   }
 
   void gravity() {
-    const Numbers c = direction(n_, 4);
-    const Real expected = slope_along({g_.system.potential}, c, step_digits()).front();
-    const Numbers U = symbolic::evaluate(*g_.system.dag, {g_.system.potential}, g_.symbols, g_.oracle.digits());
-    Real sum = 0, size = cln::abs(U.front()) * power_of_ten(-g_.table.digits()) + cln::abs(expected);
+    const Numbers c = direction(n_, coriolis_left);
+    const Real expected = slope_along({system_.potential}, c, step_digits()).front();
+    const Numbers U = symbolic::evaluate(*system_.dag, {system_.potential}, symbols_, oracle_.digits());
+    Real sum = 0, size = cln::abs(U.front()) * power_of_ten(-table_.digits()) + cln::abs(expected);
     for (std::size_t i = 0; i < n_; ++i) {
-      sum = sum + c[i] * g_.values[0][i];
-      size = size + g_.sizes[0][i] * cln::abs(c[i]);
+      sum = sum + c[i] * (*values_)[0][i];
+      size = size + (*sizes_)[0][i] * cln::abs(c[i]);
     }
     note("gravity", "differences of the potential", relative_difference(sum - expected, size));
   }
 
-  const FunctionAt& g_;
+  const ProgramForm& program_;
+  const system::EquationSystem& system_;
+  const Oracle& oracle_;
+  const SymbolValues& symbols_;
+  const AbiArguments& at_;
+  ComparisonTable& table_;
   std::size_t n_;
+  const AbiResults *values_ = nullptr, *sizes_ = nullptr;  // of the function that is compared
+  std::map<std::pair<int, std::size_t>, std::optional<CentralDifference>> slopes_;
+  std::optional<Numbers> noise_;
 };
-
-}  // namespace
 
 AbiResults value_sizes(const ProgramForm& program, const std::string& function, const AbiArguments& at,
                        const AbiResults& values, const Oracle& oracle) {
@@ -299,12 +320,15 @@ AbiResults value_sizes(const ProgramForm& program, const std::string& function, 
   return result;
 }
 
-bool compare_derivative(const FunctionAt& given) {
-  const auto found = DerivativeComparison::checks().find(given.function);
-  if (found == DerivativeComparison::checks().end()) return false;
-  DerivativeComparison comparison(given);
-  (comparison.*found->second)();
-  return true;
+DerivativeComparisons::DerivativeComparisons(const ProgramForm& program, const system::EquationSystem& system,
+                                             const Oracle& oracle, const SymbolValues& symbols, const AbiArguments& at,
+                                             ComparisonTable& table)
+    : comparison_(std::make_unique<Comparison>(program, system, oracle, symbols, at, table)) {}
+
+DerivativeComparisons::~DerivativeComparisons() = default;
+
+bool DerivativeComparisons::operator()(const std::string& function, const AbiResults& values, const AbiResults& sizes) {
+  return (*comparison_)(function, values, sizes);
 }
 
 }  // namespace eomgen::verify

@@ -41,14 +41,14 @@ class FunctionComparisons {
   }
 
   void operator()() {
+    DerivativeComparisons derivatives(program_, s_, oracle_, lookup_, at_, tally_);
     for (const std::string& function : program_.functions) {
       if (function == "rhs" || function == "prepare") continue;  // compared elsewhere, or through other functions
       const std::optional<AbiResults> values = program_.call(function, at_, oracle_.digits());
       if (!values) continue;
       sizes_ = sizes(function, *values);
       if (sizes_.empty()) continue;  // too close to another branch
-      if (!compare_derivative({program_, s_, oracle_, lookup_, at_, function, *values, sizes_, tally_}))
-        (this->*check_of(function))(*values);
+      if (!derivatives(function, *values, sizes_)) (this->*check_of(function))(*values);
     }
   }
 
