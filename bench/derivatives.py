@@ -14,7 +14,6 @@ import pathlib
 import re
 import shutil
 import subprocess
-import sys
 import tempfile
 
 import growth_models
@@ -132,7 +131,6 @@ def table(eomgen, arguments):
         for what in arguments or (*MODELS, *(FLOATING if robots else ())):
             cells = row(eomgen, compiler, what, robots, pathlib.Path(folder))
             yield f"| {' | '.join(str(cell) for cell in cells)}{' |' * (len(COLUMNS) - len(cells))} |"
-            print(cells, file=sys.stderr)
 
 
 if __name__ == "__main__":

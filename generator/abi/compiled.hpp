@@ -39,10 +39,10 @@ constexpr auto argument(const CallArguments& given) {
     return given.mode;
   else if constexpr (input == Input::order)
     return given.order;
-  else if constexpr (input == Input::vector)
-    return given.v;
-  else
+  else if constexpr (input == Input::to)
     return given.to;
+  else
+    return given.v;
 }
 
 template <Input... inputs>

@@ -33,7 +33,9 @@ const char* name(Input input) {
     case Input::inputs: return "u";
     case Input::mode: return "mode";
     case Input::order: return "order";
-    case Input::vector: return "v";
+    case Input::state_vector:
+    case Input::state_vectors:
+    case Input::accelerations: return "v";
     case Input::to: break;
   }
   return "to";
@@ -41,10 +43,8 @@ const char* name(Input input) {
 
 bool Function::has_input(Input input) const { return std::find(inputs.begin(), inputs.end(), input) != inputs.end(); }
 
-VectorEntries vector_entries(const Function& function) {
-  if (!function.has_input(Input::vector)) return VectorEntries::none;
-  if (function.name == "hvp") return VectorEntries::states_twice;
-  return function.name == "inverse" ? VectorEntries::accelerations : VectorEntries::states;
+bool is_vector(Input input) {
+  return input == Input::state_vector || input == Input::state_vectors || input == Input::accelerations;
 }
 
 const std::vector<Function>& functions() {

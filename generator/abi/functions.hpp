@@ -13,9 +13,21 @@ namespace eomgen::abi {
 /// The version of the ABI that emitted code states (NAME_abi).
 inline constexpr int version = 2;
 
-/// An input of a function. The argument names are t, x, p, w, u, mode, order, to, v. The function states what `vector`
-/// is.
-enum class Input : std::uint8_t { time, state, parameters, prepared, inputs, mode, order, to, vector };
+/// An input of a function. The argument names are t, x, p, w, u, mode, order, to, and v for the last three.
+enum class Input : std::uint8_t {
+  time,
+  state,
+  parameters,
+  prepared,
+  inputs,
+  mode,
+  order,
+  to,
+  state_vector,   // one entry per entry of x
+  state_vectors,  // two such vectors
+  accelerations   // one entry per free coordinate
+};
+bool is_vector(Input input);  // whether it is called v
 const char* name(Input input);
 
 /// When a function is emitted.
@@ -44,15 +56,6 @@ struct Function {
 };
 
 const std::vector<Function>& functions();
-
-/// Which entries the argument v of a function has.
-enum class VectorEntries : std::uint8_t {
-  none,
-  states,        // one per entry of x
-  states_twice,  // two lists of these
-  accelerations  // one per free coordinate
-};
-VectorEntries vector_entries(const Function& function);
 
 /// The function of this name, or nullptr.
 const Function* find(std::string_view name);

@@ -323,7 +323,9 @@ class Body {
       case abi::Input::prepared: return "w";
       case abi::Input::mode: return with_modes_ ? "modes[state]" : names_.null_pointer;
       case abi::Input::order: return std::to_string(taylor_order);
-      case abi::Input::vector: return fmt::format("point + {}", at_v_);
+      case abi::Input::state_vector:
+      case abi::Input::state_vectors:
+      case abi::Input::accelerations: return fmt::format("point + {}", at_v_);
       case abi::Input::to: return to == 0 ? names_.null_pointer : "to";
       case abi::Input::inputs: break;
     }

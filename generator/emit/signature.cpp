@@ -24,7 +24,9 @@ Argument argument(abi::Input input, const ModelNames& names) {
     case abi::Input::prepared: return {Kind::input, Slot::prepared, names.w};
     case abi::Input::inputs: return {Kind::input, Slot::input, names.u};
     case abi::Input::mode: return {Kind::mode, Slot::side, names.mode};
-    case abi::Input::vector: return {Kind::input, Slot::vector, names.v};
+    case abi::Input::state_vector:
+    case abi::Input::state_vectors:
+    case abi::Input::accelerations: return {Kind::input, Slot::vector, names.v};
     case abi::Input::to: return {Kind::mode, Slot::constant, abi::name(input)};
     case abi::Input::order: break;
   }

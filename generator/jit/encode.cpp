@@ -90,7 +90,9 @@ class Body {
         case abi::Input::state: a_.mov(state, from); break;
         case abi::Input::parameters: a_.mov(parameters, from); break;
         case abi::Input::prepared:
-        case abi::Input::vector: a_.mov(prepared, from); break;  // no function takes both
+        case abi::Input::state_vector:
+        case abi::Input::state_vectors:
+        case abi::Input::accelerations: a_.mov(prepared, from); break;  // no function takes both
         case abi::Input::inputs: a_.mov(inputs, from); break;
         case abi::Input::mode:
           mode = from;

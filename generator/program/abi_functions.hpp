@@ -100,7 +100,9 @@ class AbiFunctions {
   /// The gradient of v^T f by symbols, v = weights.
   std::vector<Ref> gradient(Differentiate by, const std::vector<Ref>& weights, const std::vector<symbolic::Symbol>& of);
   std::vector<Ref> arguments(std::size_t first, std::size_t count);
-  /// An expression without the friction of contacts.
+  /// Derivatives of an energy by the free coordinates (order 0) or their rates (order 1).
+  std::vector<Ref> energy_slopes(Ref energy, std::uint8_t order);
+  /// Expressions without the friction of contacts.
   std::vector<Ref> frictionless(const std::vector<Ref>& expressions);
   std::optional<std::vector<Ref>> solved_column(symbolic::Derivation& d, symbolic::Symbol along);
   Ref residual_slope(symbolic::Derivation& d, std::optional<symbolic::Symbol> along, std::size_t i);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Functions of AbiFunctions with the argument v: derivatives times vectors, and inverse dynamics; with the Coriolis
-// matrix and the gradient of the potential, which belong to it.
+// matrix, which belongs to it.
 #include "program/abi_functions.hpp"
 #include "symbolic/adjoint.hpp"
 
@@ -179,15 +179,6 @@ FunctionExpressions AbiFunctions::coriolis() {
     }
   }
   label_matrices(function);
-  return function;
-}
-
-FunctionExpressions AbiFunctions::gravity() {
-  FunctionExpressions function = empty_function("gravity");
-  std::vector<Symbol> coordinates;
-  for (const std::uint32_t i : system_.free) coordinates.push_back({SymbolKind::coordinate, i, 0});
-  function.results[0].entries =
-      symbolic::gradient(*system_.dag, {system_.potential}, {system_.dag->one()}, coordinates);
   return function;
 }
 

@@ -6,7 +6,7 @@ namespace eomgen::program {
 FunctionExpressions frame_function(Dag& dag, const std::vector<system::Frame>& frames,
                                    const std::vector<std::uint32_t>& free,
                                    const std::map<std::uint32_t, symbolic::Rational>& fix) {
-  FunctionExpressions function{"frames", {{"pose", {}}, {"J", {}}, {"bias", {}}}, {}, {}};
+  FunctionExpressions function = empty_function("frames");
   std::map<symbolic::Symbol, Ref> values;
   for (const auto& [index, value] : fix) values[{symbolic::SymbolKind::parameter, index, 0}] = dag.constant(value);
   symbolic::Substitution fixed(dag, std::move(values));

@@ -34,8 +34,7 @@ class Conversion {
     }
     for (const Pivot& pivot : wanted.pivots) graph_.pivots.push_back({value(pivot.pivot), value(pivot.scale)});
     for (const LabelledExpression& label : wanted.labels) {
-      if (place_[label.value.id] != unknown)
-        graph_.labels.push_back({value(label.value), label.name, label.section});
+      if (place_[label.value.id] != unknown) graph_.labels.push_back({value(label.value), label.name, label.section});
     }
     return std::move(graph_);
   }

@@ -22,13 +22,9 @@ bool takes_inputs(const std::string& function) {
 std::size_t vector_size(const std::string& function, const Program& program) {
   const abi::Function* found = abi::find(function);
   if (found == nullptr) return 0;
-  switch (abi::vector_entries(*found)) {
-    case abi::VectorEntries::none: return 0;
-    case abi::VectorEntries::states: return program.state_count();
-    case abi::VectorEntries::states_twice: return 2 * program.state_count();
-    case abi::VectorEntries::accelerations: break;
-  }
-  return program.free.size();
+  if (found->has_input(abi::Input::state_vector)) return program.state_count();
+  if (found->has_input(abi::Input::state_vectors)) return 2 * program.state_count();
+  return found->has_input(abi::Input::accelerations) ? program.free.size() : 0;
 }
 
 std::size_t vector_size(const Program& program) {

@@ -325,8 +325,9 @@ class Model:
         """Compiles the equations as functions of numbers, with the numbers of a scene.
 
         ``parameters`` replaces values of parameters and initial values. ``functions``: beside "rhs" and "outputs", of
-        "jac", "jac_p", "jac_u", "mass", "momenta", "constraints", "reactions", "events", "energy_gradients", "frames", "taylor"; by default "jac",
-        "mass", and for a model with constraints "constraints" and "reactions". ``solver``: of simulations.
+        "jac", "jac_p", "jac_u", "jvp", "vjp", "adjoint", "hvp", "inverse", "coriolis", "gravity", "mass", "momenta",
+        "constraints", "reactions", "events", "energy_gradients", "frames", "taylor"; by default "jac", "mass", and for
+        a model with constraints "constraints" and "reactions". ``solver``: of simulations.
         """
         options = {
             "scene": scene,

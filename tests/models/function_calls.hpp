@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "program/internal_functions.hpp"
 #include "support/simulation.hpp"
 
 namespace eomgen::test {
@@ -12,6 +13,7 @@ namespace eomgen::test {
 struct FunctionCall {
   std::string name;
   const emit::TestVector* at = nullptr;
+  std::vector<double> v;  // the argument v, if the function takes it
   int code = 0;
   std::vector<std::vector<double>> results;
 };
@@ -44,7 +46,8 @@ inline void call_c(ComparedModel& model) {
   for (const emit::TestVector& at : model.context.tests) {
     for (const program::Function& function : model.program.functions) {
       if (function.name == "prepare" || function.name == "rhs_prepared") continue;
-      FunctionCall call{function.name, &at, 0, {}};
+      FunctionCall call{function.name, &at, at.v, 0, {}};
+      call.v.resize(program::vector_size(function.name, model.program));
       for (const program::Result& result : function.results) {
         if (!result.is_test()) call.results.emplace_back(result.entries.size());
       }
@@ -53,6 +56,7 @@ inline void call_c(ComparedModel& model) {
       arguments.x = at.x.data();
       arguments.p = at.p.data();
       arguments.u = at.u.empty() ? nullptr : at.u.data();
+      arguments.v = call.v.data();
       arguments.mode = at.mode.empty() ? nullptr : at.mode.data();
       for (std::size_t r = 0; r < call.results.size(); ++r) arguments.results.at(r) = call.results[r].data();
       call.code = code.functions().call(function.name, arguments);

@@ -69,6 +69,7 @@ std::string rust_program(const std::vector<ComparedModel>& models) {
           arguments += call.at->u.empty() ? "None" : fmt::format("Some(&[{}])", listed(call.at->u, ", "));
         if (input == abi::Input::mode)
           arguments += mode.empty() ? "None" : fmt::format("Some(&[{}])", fmt::join(call.at->mode, ", "));
+        if (abi::is_vector(input)) arguments += fmt::format("&[{}]", listed(call.v, ", "));
       }
       for (std::size_t r = 0; r < call.results.size(); ++r) {
         arrays += fmt::format("let mut y{} = [0f64; {}]; ", r, call.results[r].size());
@@ -105,6 +106,7 @@ end
         if (input == abi::Input::parameters) arguments += fmt::format("[{}]", listed(call.at->p, "; "));
         if (input == abi::Input::inputs) arguments += fmt::format("[{}]", listed(call.at->u, "; "));
         if (input == abi::Input::mode) arguments += fmt::format("[{}]", listed(mode, "; "));
+        if (abi::is_vector(input)) arguments += fmt::format("[{}]", listed(call.v, "; "));
       }
       for (std::size_t r = 0; r < call.results.size(); ++r) {
         results += fmt::format("y{}, ", r);
@@ -149,6 +151,7 @@ std::string julia_program(const std::vector<ComparedModel>& models) {
         if (input == abi::Input::inputs && !call.at->u.empty())
           keywords += fmt::format(", u=Array({})", bracketed(call.at->u));
         if (input == abi::Input::mode && !mode.empty()) keywords += fmt::format(", mode=Array({})", bracketed(mode));
+        if (abi::is_vector(input)) values += fmt::format(", Array({})", bracketed(call.v));
       }
       text += fmt::format("if m['{}_b']({}{}{}{}) != {}: most = 1\n{}", call.name, results, values, time, keywords,
                           call.code, comparisons);
@@ -206,10 +209,11 @@ TEST_CASE(
        {"P2_planar_pendulum", "P4_moving_cone", "P14_kepler_spherical", "S5_double_pendulum_cartesian", "S6_chain_6",
         "R1_free_body_euler_parameters", "R6_rough_disk", "R10_lagrange_top", "R18_rodrigues", "bilinear_oscillator",
         "cart_pendulum", "knife_edge", "n_four_bar_2", "stick_slip_belt"})
-    models.push_back(compared_model(name,
-                                    {"jac", "jac_p", "jac_u", "coriolis", "gravity", "mass", "constraints", "reactions",
-                                     "events", "frames", "energy_gradients"},
-                                    {"energy", "kinetic"}));
+    models.push_back(
+        compared_model(name,
+                       {"jac", "jac_p", "jac_u", "jvp", "vjp", "adjoint", "hvp", "inverse", "coriolis", "gravity",
+                        "mass", "constraints", "reactions", "events", "frames", "energy_gradients"},
+                       {"energy", "kinetic"}));
   for (ComparedModel& model : models) {
     call_c(model);
     CHECK(model.calls.size() >= 8);

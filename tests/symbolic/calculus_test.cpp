@@ -5,6 +5,7 @@
 
 #include <functional>
 
+#include "symbolic/adjoint.hpp"
 #include "symbolic/evaluate.hpp"
 
 using namespace eomgen::symbolic;
@@ -18,10 +19,8 @@ cln::cl_R value(const Dag& dag, Ref f, const cln::cl_R& x) {
       dag, {f}, [&](const Symbol&) -> cln::cl_R { return x; }, 120)[0];
 }
 
-}  // namespace
-
-TEST_CASE("calculus: every function's derivative agrees with differences at 120 digits") {
-  Dag dag;
+/// An expression for every function, operation and branch.
+std::vector<Ref> every_function(Dag& dag) {
   const Ref x = dag.symbol(x_symbol);
   const Ref two = dag.integer(2);
   std::vector<Ref> functions;
@@ -38,6 +37,14 @@ TEST_CASE("calculus: every function's derivative agrees with differences at 120 
   functions.push_back(dag.power(dag.add(x, two), -5));
   functions.push_back(dag.div(dag.call(Op::sin, x), dag.add(two, dag.call(Op::cos, x))));
   functions.push_back(dag.select(x, two, dag.power(x, 3), x));
+  return functions;
+}
+
+}  // namespace
+
+TEST_CASE("calculus: every function's derivative agrees with differences at 120 digits") {
+  Dag dag;
+  const std::vector<Ref> functions = every_function(dag);
   const cln::cl_R at = cln::cl_float(cln::cl_R(Rational(37) / 100), cln::float_format(120));
   const cln::cl_R step = cln::cl_float(cln::cl_R(cln::expt(Rational(1) / 10, 30)), cln::float_format(120));
   // Central differences: the error is h^2 f'''/6 = 1e-60 times a number below 1e5.
@@ -46,6 +53,27 @@ TEST_CASE("calculus: every function's derivative agrees with differences at 120 
   for (const Ref f : functions) {
     const cln::cl_R difference = (value(dag, f, at + step) - value(dag, f, at - step)) / (2 * step);
     CHECK(cln::abs(value(dag, derivative(f), at) - difference) < tolerance);
+  }
+}
+
+TEST_CASE("calculus: gradients by reverse accumulation are the derivatives of forward mode") {
+  Dag dag;
+  // f(x) and f(y + x/2) of every function, weighted by a symbol that is held.
+  const Symbol y_symbol{SymbolKind::coordinate, 1, 0}, w_symbol{SymbolKind::coordinate, 2, 0};
+  const Ref x = dag.symbol(x_symbol), y = dag.symbol(y_symbol), w = dag.symbol(w_symbol);
+  Substitution shifted(dag, {{x_symbol, dag.add(y, dag.div(x, dag.integer(2)))}});
+  const std::vector<Ref> functions = every_function(dag);
+  const auto value = [](const Symbol& symbol) -> cln::cl_R { return Rational(31 + 6 * symbol.index) / 100; };
+  const auto value_of = [&](Ref r) { return evaluate(dag, {r}, value, 60)[0]; };
+  const cln::cl_R tolerance = cln::cl_R(cln::expt(Rational(1) / 10, 50));
+  for (const Ref f : functions) {
+    const Ref product = dag.mul(f, shifted(f));
+    const std::vector<Ref> got = gradient(dag, {product, x}, {w, dag.one()}, {x_symbol, y_symbol, w_symbol});
+    const cln::cl_R by_x = value_of(dag.mul(w, partial_derivative(dag, x_symbol)(product))) + 1;
+    const cln::cl_R by_y = value_of(dag.mul(w, partial_derivative(dag, y_symbol)(product)));
+    CHECK(cln::abs(value_of(got[0]) - by_x) < tolerance);
+    CHECK(cln::abs(value_of(got[1]) - by_y) < tolerance);
+    CHECK(dag.is_zero(got[2]));
   }
 }
 

@@ -42,8 +42,7 @@ struct Animation {
 };
 
 /// rows: values of the vectors at each time, in the order of Drawing::outputs(). down: direction of gravity; none: E3
-/// is up, or E2 if the motion is in the plane of E1 and E2. A part whose
-/// values are not finite in some row is left out.
+/// is up, or E2 if the motion is in the plane of E1 and E2. A part whose values are not finite in some row is left out.
 Animation animation(const DrawnParts& parts, const std::vector<double>& sizes, std::vector<double> t,
                     const std::vector<std::vector<double>>& rows, const std::optional<std::array<double, 3>>& down);
 

@@ -151,11 +151,9 @@ Language rust_language(bool single) {
 
 /// The type of the argument v.
 std::string rust_vector_type(const std::string& function, const ModelNames& names) {
-  const abi::Function* entry = abi::find(function);
-  if (entry != nullptr && abi::vector_entries(*entry) == abi::VectorEntries::accelerations)
-    return fmt::format("&[Real; {}]", names.acceleration.size());
-  const bool twice = entry != nullptr && abi::vector_entries(*entry) == abi::VectorEntries::states_twice;
-  return twice ? "&[Real; 2 * STATES]" : "&[Real; STATES]";
+  const abi::Function& entry = *abi::find(function);
+  if (entry.has_input(abi::Input::accelerations)) return fmt::format("&[Real; {}]", names.acceleration.size());
+  return entry.has_input(abi::Input::state_vectors) ? "&[Real; 2 * STATES]" : "&[Real; STATES]";
 }
 
 /// "x: &[Real; STATES], ..": with the sizes of the arrays.
@@ -302,7 +300,9 @@ std::string rust_comparison(const FunctionValues& f, const std::vector<double>& 
       case abi::Input::prepared: call += "&w"; break;
       case abi::Input::inputs: call += "Some(&v.u)"; break;
       case abi::Input::mode: call += "Some(&v.mode)"; break;
-      case abi::Input::vector: call += fmt::format("&{}", rust_list(v, dialect)); break;
+      case abi::Input::state_vector:
+      case abi::Input::state_vectors:
+      case abi::Input::accelerations: call += fmt::format("&{}", rust_list(v, dialect)); break;
       default: break;
     }
   }
