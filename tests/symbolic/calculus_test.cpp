@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <functional>
 
 #include "symbolic/adjoint.hpp"
@@ -75,6 +76,25 @@ TEST_CASE("calculus: gradients by reverse accumulation are the derivatives of fo
     CHECK(cln::abs(value_of(got[1]) - by_y) < tolerance);
     CHECK(dag.is_zero(got[2]));
   }
+}
+
+TEST_CASE("calculus: gradients have a value where the branch that is not taken has no derivative") {
+  Dag dag;
+  const Symbol y_symbol{SymbolKind::coordinate, 1, 0};
+  const Ref x = dag.symbol(x_symbol), y = dag.symbol(y_symbol), zero = dag.zero(), one = dag.one();
+  // y + 2 for x = 0, and otherwise y/sqrt(x^2), sin(y/sqrt(x^2)): the same branch twice, and one within another.
+  const Ref root = dag.call(Op::sqrt, dag.power(x, 2)), far = dag.div(y, root);
+  const Ref size = dag.call(Op::abs, x);
+  const Ref f = dag.select(zero, size, far, dag.add(y, dag.integer(2)));
+  const Ref g = dag.select(zero, size, dag.call(Op::sin, dag.select(y, one, far, dag.power(far, 2))), y);
+  const std::vector<Ref> got = gradient(dag, {f, g}, {dag.integer(3), dag.integer(5)}, {x_symbol, y_symbol});
+  const auto binary = [&](Ref r, double at_x, double at_y) {
+    const std::function<double(const Symbol&)> value = [&](const Symbol& s) { return s == x_symbol ? at_x : at_y; };
+    return evaluate(dag, {r}, value)[0];
+  };
+  CHECK(binary(got[0], 0, 0.3) == 0);
+  CHECK(binary(got[1], 0, 0.3) == 8);
+  CHECK(binary(got[1], 2, 0.3) == doctest::Approx(3 / 2.0 + 5 * std::cos(0.15) / 2).epsilon(1e-14));
 }
 
 TEST_CASE("calculus: the total time derivative follows coordinates, functions of time and time itself") {
