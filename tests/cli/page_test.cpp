@@ -133,9 +133,12 @@ ChildResult browse(const Folder& folder, const std::string& program, Words words
 
 /// Results of page_checks.js for the cases.
 Json inspect_pages(const Folder& folder, const std::string& program, const Json& cases) {
-  folder.write("checks.html", "<!DOCTYPE html><html><body><pre id=\"found\"></pre><script id=\"cases\">const cases = " +
-                                  in_script(cases) + ";</script><script>" + source("tests/cli/page_checks.js") +
-                                  "</script></body></html>");
+  // The encoding is stated: a browser guesses it from the first bytes otherwise, and marks of rates would not be found.
+  folder.write("checks.html",
+               "<!DOCTYPE html><html><head><meta charset=\"utf-8\"></head><body><pre id=\"found\"></pre><script "
+               "id=\"cases\">const cases = " +
+                   in_script(cases) + ";</script><script>" + source("tests/cli/page_checks.js") +
+                   "</script></body></html>");
   const ChildResult result = browse(folder, program,
                                     {"--window-size=1300,1000", "--virtual-time-budget=100000000", "--dump-dom",
                                      "file://" + (folder / "checks.html")});

@@ -21,7 +21,13 @@ struct Place {
   std::vector<std::string> own;     // coordinates of its position
   std::vector<std::string> angles;  // coordinates of its rotation
   bool euler_parameters = false;
-  bool free_position = false;  // three (in a plane two) Cartesian coordinates of its own, from the origin
+  bool free_position = false;           // three (in a plane two) Cartesian coordinates of its own, from the origin
+  std::set<std::string> carriers = {};  // places that its position or its rotation depends on
+
+  void depend_on(const Place& other) {
+    carriers.insert(other.name);
+    carriers.insert(other.carriers.begin(), other.carriers.end());
+  }
 };
 
 // Writes one model. Every member adds some lines and records the names that later ones may refer to.

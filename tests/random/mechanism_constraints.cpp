@@ -43,7 +43,7 @@ void MechanismBuilder::add_constraints() {
         break;
       }
       case 1:
-        if (!a.free_position || &a == &b || !room(1)) break;
+        if (!a.free_position || &a == &b || b.carriers.contains(a.name) || !room(1)) break;
         if (follows_.contains(a.own[0])) break;
         follows_.insert(a.own[0]);
         constraint("distance", "holonomic = \"norm(" + a.name + " - " + b.name + ") - " + value(80, 200) +
@@ -92,6 +92,8 @@ void MechanismBuilder::add_joint_of_all_axes() {
   const Place& a = one_of(fits);
   const Place& b = places_[dice_.below(places_.size())];
   if (!fits(a) || (&a != &b && !b.body)) return;
+  // Points that move with the position of a may have a distance that no position of a removes.
+  if (universal && b.carriers.contains(a.name)) return;
   const std::string other = &a == &b ? "ground" : b.name,
                     head = "[[joint]]\nname = \"j" + std::to_string(joints_ + 1) + "\"\n";
   const std::string bodies = "bodies = [\"" + other + "\", \"" + a.name + "\"]\n";

@@ -6,7 +6,10 @@ namespace eomgen::random_models {
 
 std::string MechanismBuilder::chart(Place& place) {
   const Place* from = earlier(40);
-  if (from != nullptr) feature("from");
+  if (from != nullptr) {
+    feature("from");
+    place.depend_on(*from);
+  }
   const std::string tail = (from != nullptr ? ", from = \"" + from->name + "\"" : "") + std::string(" }");
   const auto own = [&](std::vector<std::string> names) {
     for (const std::string& n : names) place.own.push_back(n);
@@ -151,6 +154,7 @@ void MechanismBuilder::add_body() {
   std::string position;
   if (carrier != nullptr) {
     feature("tree of bodies");
+    body.depend_on(*carrier);
     if (dice_.chance(25)) {
       feature("sliding in a tree");
       position = "\"" + carrier->name + " + " + length() + "*" + body_axis(*carrier) + "\"";
@@ -171,6 +175,7 @@ void MechanismBuilder::add_body() {
                   "\"\ninertia = " + inertia(body) + "\nposition = " + position + "\nrotation = " + turned + "\n";
   if (parent != nullptr) {
     feature("relative rotation");
+    body.depend_on(*parent);
     place_lines_ += "relative_to = \"" + parent->name + "\"\n";
   }
   places_.push_back(body);
