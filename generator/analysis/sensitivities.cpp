@@ -9,7 +9,7 @@ namespace eomgen::analysis {
 namespace {
 
 [[noreturn]] void refuse(const std::string& what, const std::string& remedy) {
-  throw Error("run", {}, "--sensitivity: " + what, remedy);
+  throw Error("run", {}, "no derivatives of the end: " + what, remedy);
 }
 
 /// Rejects names without a direction of their own.
@@ -37,22 +37,35 @@ std::vector<std::string> sensitivity_functions(const model::Model& model) {
   return functions;
 }
 
-run::Sensitivities sensitivities(const pipeline::Simulation& simulation, const pipeline::SimulationRequest& request,
-                                 const std::vector<std::string>& names) {
-  const run::Code code = simulation.code.code_for_run();
-  pipeline::DerivedModel& derived = *simulation.derived;
-  run::RunRequest run = pipeline::make_run_request(derived, simulation.scene, code, false);
+run::RunRequest differentiable_run(const pipeline::Simulation& simulation, const pipeline::SimulationRequest& request,
+                                   const run::Code& code) {
+  run::RunRequest run = pipeline::make_run_request(*simulation.derived, simulation.scene, code, false);
   run.interrupt = request.interrupt;
   run.max_steps = request.max_steps;
+  return run;
+}
+
+std::vector<run::Direction> directions_of(const pipeline::Simulation& simulation,
+                                          const pipeline::SimulationRequest& request, const run::RunRequest& run,
+                                          const std::vector<std::string>& names) {
+  pipeline::DerivedModel& derived = *simulation.derived;
   const run::ModelScene scene{derived.mechanics,     derived.candidates.front(), derived.model.scene(request.scene),
-                              request.overrides,     simulation.scene,           code.free,
+                              request.overrides,     simulation.scene,           run.code.free,
                               run.state_names.size()};
   std::vector<run::Direction> directions;
   for (const std::string& name : names) {
-    require_direction(derived.model, code, run.state_names, name);
+    require_direction(derived.model, run.code, run.state_names, name);
     directions.push_back(run::find_direction(scene, name));
   }
-  return run::integrate_sensitivities(run, simulation.result, directions, request.estimate);
+  return directions;
+}
+
+run::Sensitivities sensitivities(const pipeline::Simulation& simulation, const pipeline::SimulationRequest& request,
+                                 const std::vector<std::string>& names) {
+  const run::Code code = simulation.code.code_for_run();
+  const run::RunRequest run = differentiable_run(simulation, request, code);
+  return run::integrate_sensitivities(run, simulation.result, directions_of(simulation, request, run, names),
+                                      request.estimate);
 }
 
 }  // namespace eomgen::analysis

@@ -8,6 +8,7 @@
 
 #include "cli/operations.hpp"
 #include "cli/output.hpp"
+#include "cli/gradient_report.hpp"
 #include "cli/sensitivity_report.hpp"
 
 namespace eomgen::cli {
@@ -202,6 +203,7 @@ Json RunReport::json() const {
   }
   document["files"] = written;
   if (sensitivities) document["sensitivities"] = json_of(*sensitivities, pipeline::state_names(derived));
+  if (gradients) document["gradients"] = json_of(*gradients);
   if (!has_error_estimate) return document;
   Json estimate = nullptr;
   for (const auto& [name, value] : result.error_estimate) estimate[name] = std::isfinite(value) ? value : unbounded;
@@ -266,6 +268,7 @@ std::string RunReport::text() const {
                                      size_text(static_cast<double>(file.bytes))));
   }
   if (sensitivities) out += text_of(*sensitivities, pipeline::state_names(derived));
+  if (gradients) out += text_of(*gradients);
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/gradients.hpp"
 #include "analysis/sensitivities.hpp"
 #include "cli/json.hpp"
 #include "pipeline/simulate.hpp"
@@ -23,6 +24,7 @@ struct RunReport {
   const pipeline::Simulation& simulation;
   bool has_error_estimate = true;                        // false: the document has no error_estimate
   std::optional<run::Sensitivities> sensitivities = {};  // if requested
+  std::optional<run::Gradients> gradients = {};          // if requested
   std::vector<WrittenFile> files = {};
 
   std::string text() const;

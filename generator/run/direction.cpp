@@ -26,7 +26,7 @@ using symbolic::SymbolKind;
 constexpr int first_step = -5, smaller_steps = -4, most_steps = 3;
 
 [[noreturn]] void refuse(const std::string& what, const std::string& remedy) {
-  throw Error("run", {}, "--sensitivity: " + what, remedy);
+  throw Error("run", {}, "no derivatives of the end: " + what, remedy);
 }
 
 std::vector<double> table_values(const Scene& scene) {

@@ -189,4 +189,14 @@ std::vector<cln::cl_R> exact_parameters(Mechanics& m, const model::Scene& scene,
   return parameter_values(m, formula, wanted_digits);
 }
 
+std::vector<std::string> independent_parameters(Mechanics& m, const model::Scene& scene, const Overrides& overrides) {
+  const std::vector<Ref> formulas = parameter_formulas(m, scene, overrides);
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < formulas.size(); ++i) {
+    const model::Parameter& parameter = m.model->parameters[i];
+    if (!parameter.initial_value_of && m.dag->is_constant(formulas[i])) names.push_back(parameter.name);
+  }
+  return names;
+}
+
 }  // namespace eomgen::run

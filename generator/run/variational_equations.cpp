@@ -30,8 +30,8 @@ Problem problem_of(const RunRequest& request, const std::string& solver) {
   return problem;
 }
 
-void refuse_sensitivity(const std::string& what) {
-  throw Error("run", {}, "--sensitivity: " + what, "compare runs with changed values (--set), or sweep over them");
+void refuse_derivative(const std::string& what) {
+  throw Error("run", {}, "no derivatives of the end: " + what, "compare runs with changed values (--set), or sweep over them");
 }
 
 std::vector<DueSample> due_samples(const Problem& problem, double from, double until) {
@@ -48,14 +48,14 @@ void take_samples(VariationalEquations& in, const std::vector<DueSample>& due, d
   in.resets.crossed(sides, in.resets.event_values(t, x.data()));
   for (const DueSample& sample : due) {
     if (in.resets.take_sample(sample.kind, sample.k, t, x, {}))
-      refuse_sensitivity(
+      refuse_derivative(
           fmt::format("the sample '{}' at t = {} is undetermined", in.problem.samples[sample.kind].name, t));
   }
   const std::vector<std::size_t> caused = in.resets.crossed(sides, in.resets.event_values(t, x.data()));
   const eom::hybrid::Resets::Changes made = in.resets.occur(caused, sides, t, x, {});
   in.context.model.set_mode(mode);
   if (made.failed || made.stopped)
-    refuse_sensitivity(fmt::format("the sample at t = {} causes an event that {}", t,
+    refuse_derivative(fmt::format("the sample at t = {} causes an event that {}", t,
                                    made.failed ? "is undetermined" : "ends the run"));
 }
 
@@ -67,7 +67,7 @@ void apply_reset(VariationalEquations& in, std::size_t i, double t, std::vector<
   const eom::hybrid::Resets::Changes made = in.resets.occur({i}, sides, t, x, {});
   in.context.model.set_mode(mode);
   if (made.failed)
-    refuse_sensitivity(fmt::format("the event '{}' at t = {} is undetermined", in.problem.events[i].name, t));
+    refuse_derivative(fmt::format("the event '{}' at t = {} is undetermined", in.problem.events[i].name, t));
 }
 
 }  // namespace eomgen::run

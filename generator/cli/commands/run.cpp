@@ -6,6 +6,7 @@
 #include <chrono>
 #include <optional>
 
+#include "analysis/gradients.hpp"
 #include "analysis/sensitivities.hpp"
 #include "cli/animation_file.hpp"
 #include "cli/commands/commands.hpp"
@@ -29,9 +30,11 @@ namespace {
 
 struct Options : SceneOptions {
   std::string model, out, plot, animation, approach = "auto", form = "auto", tier = "auto", estimate = "bounded";
-  std::vector<std::string> sensitivity, plot_of;
+  std::vector<std::string> sensitivity, gradient, by, plot_of;
   std::size_t max_steps = 0;
   bool no_error_estimate = false, no_charts = false, yes = false;
+
+  bool wants_derivatives() const { return !sensitivity.empty() || !gradient.empty(); }
 };
 
 /// Passes rows to the CSV file and to the plot.
@@ -145,9 +148,13 @@ int execute(const Options& options, const CommonOptions& common) {
   request.tier = pipeline::parse_tier(options.tier);
   request.estimate = !options.no_error_estimate;
   request.estimate_cost = pipeline::parse_estimate_cost(options.estimate, options.no_error_estimate);
-  request.charts =
-      !options.no_charts && options.sensitivity.empty();  // derivatives refer to the model's own coordinates
+  // Derivatives refer to the model's own coordinates.
+  request.charts = !options.no_charts && !options.wants_derivatives();
   if (!options.sensitivity.empty()) request.with = analysis::sensitivity_functions(*request.model);
+  if (!options.gradient.empty()) request.with.emplace_back("adjoint");
+  if (options.gradient.empty() && !options.by.empty())
+    throw Error("run", {}, "--by selects what outputs are differentiated by, and there is no gradient",
+                "add --gradient OUTPUTS, or use --sensitivity NAMES");
   request.seed = common.seed;
   Progress progress;
   if (isatty(STDERR_FILENO) != 0) request.progress = [&progress](double fraction) { progress(fraction); };
@@ -161,8 +168,13 @@ int execute(const Options& options, const CommonOptions& common) {
     throw Error("run", {}, "--plot-of selects what is plotted, and there is no plot",
                 "add --plot F.svg, or --plot - for characters");
   }
+  std::vector<std::string> differentiated;
   request.prepare = [&](pipeline::DerivedModel& derived) {
     std::vector<std::string> names = plotted_outputs(options, derived);
+    if (!options.gradient.empty()) {
+      differentiated = analysis::gradient_outputs(derived, options.gradient);
+      names.insert(names.end(), differentiated.begin(), differentiated.end());
+    }
     if (!animation.wanted()) return names;
     const std::vector<std::string> drawn = animation.prepare(derived);
     names.insert(names.end(), drawn.begin(), drawn.end());
@@ -200,13 +212,15 @@ int execute(const Options& options, const CommonOptions& common) {
   }
   const eom::Outcome outcome = simulation.result.outcome;
   const bool ended = outcome == eom::Outcome::done || outcome == eom::Outcome::stopped_by_event;
-  RunReport report{simulation, request.estimate, {}, std::move(files)};
-  if (!options.sensitivity.empty() && ended && simulation.scene.t1 == simulation.scene.t0) {
+  RunReport report{simulation, request.estimate, {}, {}, std::move(files)};
+  if (options.wants_derivatives() && ended && simulation.scene.t1 == simulation.scene.t0) {
     throw Error("run", {}, "nothing moves between t0 and t0: there are no derivatives of the end",
-                "give a later --t-end, or leave --sensitivity out");
+                "give a later --t-end, or leave --sensitivity and --gradient out");
   }
   if (!options.sensitivity.empty() && ended)
     report.sensitivities = analysis::sensitivities(simulation, request, options.sensitivity);
+  if (!options.gradient.empty() && ended)
+    report.gradients = analysis::gradients(simulation, request, differentiated, options.by);
   if (common.json) {
     print_document(report.json());
   } else {
@@ -214,8 +228,13 @@ int execute(const Options& options, const CommonOptions& common) {
     print_readable(report.text(), taken);
     if (!options.sensitivity.empty() && !ended)
       print_readable("\nsensitivities     none: the run did not come to its end\n", taken);
+    if (!options.gradient.empty() && !ended)
+      print_readable("\ngradients         none: the run did not come to its end\n", taken);
   }
-  return ended && (!report.sensitivities || report.sensitivities->outcome == eom::Outcome::done) ? 0 : 3;
+  const auto is_done = [](const auto& derivatives) {
+    return !derivatives || derivatives->outcome == eom::Outcome::done;
+  };
+  return ended && is_done(report.sensitivities) && is_done(report.gradients) ? 0 : 3;
 }
 
 }  // namespace
@@ -243,6 +262,10 @@ Execute declare_run(Arguments& app) {
   app.add_flag("--yes", options->yes, "writes a table however large it is");
   app.add_list("--sensitivity", options->sensitivity,
                "derivatives of the end by these parameters and values of the start");
+  app.add_list("--gradient", options->gradient,
+               "derivatives of these outputs at the end, at a cost that does not grow with the number of parameters");
+  app.add_list("--by", options->by,
+               "the parameters and values of the start of --gradient; otherwise all parameters that are numbers");
   add_outputs(app, *options);
   add_approach(app, options->approach);
   add_form(app, options->form);

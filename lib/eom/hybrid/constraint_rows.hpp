@@ -65,6 +65,8 @@ class ConstraintRows {
   std::size_t slip_row_of(std::size_t contact) const;
   /// A qdot + b of a row.
   double rate(double t, const double* x, const double* u, std::size_t row);
+  /// Sum of the sizes of the terms of a linearised position constraint: sum |A_i q_i|. NaN without a value.
+  double terms(double t, const double* x, const double* u, std::size_t row);
 
   /// Largest |psi|, |f . qdot + b| of a state; infinite if one has no value. Integrals are monitored as invariants.
   double defect(double t, const double* x);
@@ -90,6 +92,7 @@ class ConstraintRows {
   int constraints(double t, const double* x);
   void fill_integrals(const double* x, double* psi, double* A, double* b) const;
   void fill_slips(const double* x, double* psi, double* A, double* b) const;
+  int fill_closed(double t, const double* x, const double* u);
 
   const Problem& problem_;
   const Code* code_;
@@ -247,16 +250,28 @@ inline void ConstraintRows::fill_slips(const double* x, double* psi, double* A, 
   }
 }
 
-inline double ConstraintRows::rate(double t, const double* x, const double* u, std::size_t row) {
+// All rows with all contacts closed, into row_psi_, row_A_, row_b_.
+inline int ConstraintRows::fill_closed(double t, const double* x, const double* u) {
   const std::size_t rows = size();
   row_psi_.resize(rows), row_b_.resize(rows), row_A_.resize(rows * n_);
   const int mode = mode_;
-  mode_ = 0;  // all contacts closed
+  mode_ = 0;
   const int code = (*this)(t, x, u, row_psi_.data(), row_A_.data(), row_b_.data());
   mode_ = mode;
-  if (code != 0) return std::nan("");
+  return code;
+}
+
+inline double ConstraintRows::rate(double t, const double* x, const double* u, std::size_t row) {
+  if (fill_closed(t, x, u) != 0) return std::nan("");
   double sum = row_b_[row] + targets_[row];
-  for (std::size_t i = 0; i < n_; ++i) sum += row_A_[row + rows * i] * x[n_ + i];
+  for (std::size_t i = 0; i < n_; ++i) sum += row_A_[row + size() * i] * x[n_ + i];
+  return sum;
+}
+
+inline double ConstraintRows::terms(double t, const double* x, const double* u, std::size_t row) {
+  if (fill_closed(t, x, u) != 0) return std::nan("");
+  double sum = 0;
+  for (std::size_t i = 0; i < n_; ++i) sum += std::abs(row_A_[row + size() * i] * x[i]);
   return sum;
 }
 

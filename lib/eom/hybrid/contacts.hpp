@@ -75,6 +75,10 @@ class ContactModes {
     std::vector<std::size_t> contacts;
     bool over = true;  // all bounces are lower than the accuracy of the gaps
   };
+  /// Gaps up to this value are not known from 0: rounding of the terms of the gap, and of the coordinates.
+  double gap_accuracy(double t, std::span<const double> x, std::size_t j) {
+    return std::max(known_gap * largest_gap_, velocities_.gap_rounding(t, x, model_.inputs(t), j));
+  }
   bool compute_gap_decelerations(double t, std::span<double> x, int mode, std::vector<double>& result);
   MetContacts contacts_met(double t, std::span<double> x, std::size_t j, double time);
   void end_bounce_sequence(double& t, std::span<double> x, std::size_t j);
@@ -322,10 +326,10 @@ inline ContactModes::MetContacts ContactModes::contacts_met(double t, std::span<
       velocities_.impact(t, after, model_.inputs(t), with_contact_digit(mode(), j, 0), j, restitution_[j]) != 0)
     return result;
   const Motion motion{this};
-  const double known = known_gap * largest_gap_;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (i == j || !contacts[i].unilateral) continue;
     const bool is_closed = contact_digit(mode(), i) < 3;
+    const double known = gap_accuracy(t, x, i);
     const double gap = is_closed ? 0 : g_[contact_values * i + 3], away = motion.gap_rate(t, after, i);
     const bool alone = is_closed ? std::abs(away) <= velocities_.negligible_speed()
                                  : gap > known && gap + (away - std::max(fall[i], 0.0) * time / 2) * time > 0;
@@ -345,7 +349,7 @@ inline void ContactModes::end_bounce_sequence(double& t, std::span<double> x, st
   const double e = restitution_[j], up = -e * motion.gap_rate(t, x, j);
   std::vector<double> fall;
   if (!(up > 0) || !compute_gap_decelerations(t, x, mode(), fall)) return;
-  if (!(fall[j] > 0) || up * up / (2 * fall[j]) > known_gap * largest_gap_) return;
+  if (!(fall[j] > 0) || up * up / (2 * fall[j]) > gap_accuracy(t, x, j)) return;
   const double time = 2 * up / (fall[j] * (1 - e));
   MetContacts met = contacts_met(t, x, j, time);
   if (!met.contacts.empty()) {

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -29,6 +30,8 @@ class ContactVelocities {
   int stick(double t, std::span<double> x, const double* u, int mode, std::size_t contact);
   int slide(double t, std::span<double> x, const double* u, int mode, std::size_t contact);
   double gap_rate(double t, std::span<const double> x, const double* u, std::size_t contact);
+  /// Rounding errors of the gap of a contact, from the coordinates that it depends on.
+  double gap_rounding(double t, std::span<const double> x, const double* u, std::size_t contact);
 
   /// Slip and gap speeds up to this value count as zero: within the tolerances of the run.
   double negligible_speed() const;
@@ -133,6 +136,13 @@ inline int ContactVelocities::move(double t, std::span<double> x, const double* 
 
 inline double ContactVelocities::gap_rate(double t, std::span<const double> x, const double* u, std::size_t contact) {
   return rows_.rate(t, x.data(), u, rows_.row_of(contact));
+}
+
+inline double ContactVelocities::gap_rounding(double t, std::span<const double> x, const double* u,
+                                              std::size_t contact) {
+  constexpr double roundings = 16;  // as in contacts/thresholds.hpp
+  const double terms = rows_.terms(t, x.data(), u, rows_.row_of(contact));
+  return std::isfinite(terms) ? roundings * std::numeric_limits<double>::epsilon() * terms : 0;
 }
 
 // Closed contacts whose bodies would be driven into one another by the impulse take part in it. Others do not.

@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/variational_jumps.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <eom/hybrid/impulses.hpp>
+
+#include "run/central_differences.hpp"
+
+namespace eomgen::run {
+namespace {
+
+using eom::hybrid::Breakpoint;
+
+constexpr int smaller_differences = -4, most_differences = 8;  // powers of 2; number of the differences tried
+constexpr double continuous = 1e-10;                           // of f: a smaller jump is rounding
+
+double largest(const std::vector<double>& values) {
+  double size = 0;
+  for (const double v : values) size = std::max(size, std::abs(v));
+  return size;
+}
+
+}  // namespace
+
+VariationalJumps::VariationalJumps(const RunRequest& request, const RunResult& motion, const std::string& solver,
+                                   const std::vector<Direction>& directions)
+    : scene_(request.scene),
+      motion_(motion),
+      directions_(directions),
+      own_(problem_of(request, solver), kink_times(request.scene)),
+      n_(own_.problem.states()),
+      f_(n_) {}
+
+std::vector<eom::EventFunction> VariationalJumps::watched_functions() const {
+  const auto& all = own_.context.events;
+  std::vector<eom::EventFunction> watched(all.size(), {eom::Direction::any, eom::Watch::off});
+  const std::size_t first = all.first_kink();
+  for (std::size_t i = 0; i < first; ++i) {
+    const eom::hybrid::WatchedEvent& event = own_.problem.events[i];
+    if (!event.reset.set.empty()) watched[i] = {event.direction, eom::Watch::breaking};
+  }
+  for (std::size_t k = first; k < all.first_contact(); ++k) watched[k].watch = eom::Watch::breaking;
+  return watched;
+}
+
+bool VariationalJumps::start(eom::Result& total) {
+  segment_ = 0;
+  own_.context.kinks.start();
+  own_.enter(segment_);
+  own_.context.freeze_branches(total.t, total.x.data(), true);
+  const std::vector<DueSample> due = due_samples(own_.problem, scene_.t0, scene_.t0);
+  if (!due.empty()) {
+    require_samples_to_stay(due);
+    change_by_samples(due, total, changes_of_time([](const Direction& d) { return d.dt0; }));
+  }
+  return shift(total, changes_of_time([](const Direction& d) { return -d.dt0; }));
+}
+
+bool VariationalJumps::cross_kink_in_time(eom::Result& total) {
+  const Breakpoint& kink = own_.kinks[segment_];
+  const auto dt = [k = segment_](const Direction& d) { return d.dt.empty() ? 0.0 : d.dt[k]; };
+  if (!shift(total, changes_of_time(dt))) return false;
+  const std::vector<double> x = total.x;
+  std::vector<double> after = state_of(x);
+  if (cross(own_, after)) {
+    for (std::size_t d = 0; d < directions_.size(); ++d) change_by_impulse(x, after, d, total.x);
+    std::copy(after.begin(), after.end(), total.x.begin());
+  }
+  total.t = kink.after;
+  own_.enter(++segment_);
+  const std::vector<DueSample> due = due_samples(own_.problem, kink.before, kink.after);
+  if (!due.empty()) change_by_samples(due, total, changes_of_time(dt));
+  own_.context.freeze_branches(total.t, total.x.data(), true);
+  return shift(total, changes_of_time([&](const Direction& d) { return -dt(d); }));
+}
+
+bool VariationalJumps::end(eom::Result& total) {
+  const std::optional<std::size_t> stop = stopping_event();
+  std::vector<double> dt;
+  for (std::size_t d = 0; d < directions_.size(); ++d)
+    dt.push_back(directions_[d].scale * (stop ? time_change(*stop, total.t, total.x, d) : directions_[d].dt1));
+  if (!shift(total, dt)) return false;
+  total.x.insert(total.x.end(), dt.begin(), dt.end());
+  return true;
+}
+
+bool VariationalJumps::cross_event(const eom::EventPoint& point) {
+  return point.crossing.function < own_.context.events.first_kink() ? reset(point) : cross_surface(point);
+}
+
+std::vector<double> VariationalJumps::state_of(const std::vector<double>& x) const {
+  return {x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n_)};
+}
+
+/// s of direction d, without its scale.
+std::vector<double> VariationalJumps::sensitivity(const std::vector<double>& x, std::size_t d) const {
+  std::vector<double> s(n_);
+  for (std::size_t i = 0; i < n_; ++i) s[i] = x[(d + 1) * n_ + i] / directions_[d].scale;
+  return s;
+}
+
+std::vector<double> VariationalJumps::changes_of_time(const std::function<double(const Direction&)>& dt) const {
+  std::vector<double> changes;
+  for (const Direction& d : directions_) changes.push_back(d.scale * dt(d));
+  return changes;
+}
+
+/// s += f dt. False: f has no value, and the run ends.
+bool VariationalJumps::shift(eom::Result& total, const std::vector<double>& dt) {
+  if (std::all_of(dt.begin(), dt.end(), [](double by) { return by == 0; })) return true;
+  if (const int code = own_.context.rhs(total.t, total.x.data(), f_.data()); code != 0) {
+    total.outcome = eom::outcome_of_abi_code(code);
+    return false;
+  }
+  for (std::size_t d = 0; d < directions_.size(); ++d) {
+    for (std::size_t i = 0; i < n_; ++i) total.x[(d + 1) * n_ + i] += dt[d] * f_[i];
+  }
+  return true;
+}
+
+void VariationalJumps::require_samples_to_stay(const std::vector<DueSample>& due) {
+  for (std::size_t d = 0; d < directions_.size(); ++d) {
+    for (const auto& neighbour : neighbours(d)) {
+      const eom::hybrid::Problem& in = neighbour->problem;
+      for (const DueSample& sample : due) {
+        if (eom::hybrid::sample_between(in.samples[sample.kind], in.t0, in.t0) != sample.k)
+          refuse_derivative(fmt::format("the sample '{}' at the start moves away from it with {}",
+                                         own_.problem.samples[sample.kind].name, directions_[d].name));
+      }
+    }
+  }
+}
+
+/// Applies the impulse at the end of the current segment, if there is one.
+bool VariationalJumps::cross(VariationalEquations& in, std::vector<double>& x) const {
+  if (segment_ >= in.kinks.size() || !in.context.events.jumps().has_time_kinks()) return false;
+  const Breakpoint& kink = in.kinks[segment_];
+  if (kink.after == kink.before) return false;
+  in.enter(segment_);
+  eom::Result at;
+  at.t = kink.before;
+  at.x = std::move(x);
+  bool changed = false;
+  const auto note = [&](const eom::hybrid::Event&, std::span<const double>) { changed = true; };
+  const eom::hybrid::Reason open = cross_impulse(in.context, {kink.before, kink.after, 0}, at, note);
+  x = std::move(at.x);
+  if (open) refuse_derivative(fmt::format("the impulse at t = {} is undetermined", kink.before));
+  return changed;
+}
+
+/// The s after an impulse: dJ/dx s + dJ. x: before it, with every s; after: the state.
+void VariationalJumps::change_by_impulse(const std::vector<double>& x, const std::vector<double>& after, std::size_t d,
+                                         std::vector<double>& out) {
+  const Direction& direction = directions_[d];
+  const std::vector<double> own = state_of(x);
+  std::vector<std::vector<double>> beside;
+  for (const auto& neighbour : neighbours(d)) {
+    beside.push_back(own);
+    cross(*neighbour, beside.back());
+  }
+  const auto what = [&] {
+    return fmt::format("the impulse at t = {} does not change smoothly with {}", own_.kinks[segment_].before,
+                       direction.name);
+  };
+  const std::vector<double> of_scene = own_slopes(d, after, beside, what);
+  const std::vector<double> of_state = along(0, own, 0, sensitivity(x, d), what, [&](double, std::vector<double> at) {
+    cross(own_, at);
+    return at;
+  });
+  for (std::size_t i = 0; i < n_; ++i) out[(d + 1) * n_ + i] = direction.scale * (of_state[i] + of_scene[i]);
+}
+
+/// x and s after samples at the start of a segment: s becomes dJ/dx s + dJ/dt dt + dJ. dt: times the scales.
+void VariationalJumps::change_by_samples(const std::vector<DueSample>& due, eom::Result& total,
+                                         const std::vector<double>& dt) {
+  const std::vector<double> x = total.x, own = state_of(x);
+  std::vector<double> after = own;
+  take_samples(own_, due, total.t, after);
+  for (std::size_t d = 0; d < directions_.size(); ++d) {
+    const Direction& direction = directions_[d];
+    const auto what = [&] {
+      return fmt::format("the sample '{}' at t = {} does not change the state smoothly with {}",
+                         own_.problem.samples[due.front().kind].name, total.t, direction.name);
+    };
+    std::vector<std::vector<double>> beside;
+    for (const auto& neighbour : neighbours(d)) {
+      beside.push_back(own);
+      take_samples(in_segment(*neighbour), due, total.t, beside.back());
+    }
+    const std::vector<double> of_scene = own_slopes(d, after, beside, what);
+    const std::vector<double> of_state = along(total.t, own, dt[d] / direction.scale, sensitivity(x, d), what,
+                                               [&](double at, std::vector<double> state) {
+                                                 take_samples(own_, due, at, state);
+                                                 return state;
+                                               });
+    for (std::size_t i = 0; i < n_; ++i) total.x[(d + 1) * n_ + i] = direction.scale * (of_state[i] + of_scene[i]);
+  }
+  std::copy(after.begin(), after.end(), total.x.begin());
+}
+
+std::vector<double> VariationalJumps::along(double t, const std::vector<double>& x, double dt,
+                                            const std::vector<double>& dx, const What& what,
+                                            const Values& values) const {
+  const std::vector<double> middle = values(t, x);
+  const double size = largest(dx);
+  if (size == 0 && dt == 0) return std::vector<double>(middle.size(), 0.0);
+  const double widest = std::max(size > 0 ? std::max(largest(x), scene_.atol) / size : 0,
+                                 dt != 0 ? (scene_.t1 - scene_.t0) / std::abs(dt) : 0);
+  double step = std::ldexp(1.0, std::ilogb(widest));
+  for (int attempt = 0; attempt < most_differences; ++attempt) {
+    step = std::ldexp(step, smaller_differences);
+    std::vector<std::vector<double>> beside;
+    for (const double offset : difference_offsets(step)) {
+      std::vector<double> at = x;
+      for (std::size_t i = 0; i < n_; ++i) at[i] += offset * dx[i];
+      beside.push_back(values(t + offset * dt, std::move(at)));
+    }
+    Slopes found = slopes(middle, beside, step);
+    if (found.smooth) return found.value;
+  }
+  refuse_derivative(what());
+}
+
+/// Derivatives along the scenes beside that of the run. beside: the values in each.
+std::vector<double> VariationalJumps::own_slopes(std::size_t d, const std::vector<double>& middle,
+                                                 const std::vector<std::vector<double>>& beside,
+                                                 const What& what) const {
+  if (beside.empty()) return std::vector<double>(middle.size(), 0.0);
+  Slopes found = slopes(middle, beside, directions_[d].step);
+  if (!found.smooth) refuse_derivative(what());
+  return found.value;
+}
+
+std::vector<double> VariationalJumps::by_scene(std::size_t d, double t, const std::vector<double>& x, const What& what,
+                                               const ValuesIn& values) {
+  std::vector<std::vector<double>> beside;
+  for (const auto& neighbour : neighbours(d)) beside.push_back(values(in_segment(*neighbour), t, x));
+  return own_slopes(d, values(own_, t, x), beside, what);
+}
+
+/// At an event that changes the state. False: its condition does not hold.
+bool VariationalJumps::reset(const eom::EventPoint& point) {
+  const std::size_t i = point.crossing.function;
+  const double t = point.t;
+  const std::string& name = own_.problem.events[i].name;
+  std::vector<double> x(point.x.begin(), point.x.end()), own = state_of(x);
+  if (!own_.resets.occurs(i, t, own.data())) return false;
+  for (const std::size_t j : point.simultaneous) {
+    if (j < own_.problem.events.size())
+      refuse_derivative(fmt::format("the events '{}' and '{}' occur at the same time t = {}, and their order changes",
+                                     name, own_.problem.events[j].name, t));
+  }
+  std::vector<double> before(n_), behind(n_), after = own;
+  if (!rhs(t, own.data(), before)) return true;  // the integration reports it
+  apply_reset(own_, i, t, after);
+  std::vector<double> s_after, times;
+  for (std::size_t d = 0; d < directions_.size(); ++d) {
+    const Direction& direction = directions_[d];
+    const auto what = [&] {
+      return fmt::format("the event '{}' at t = {} does not change smoothly with {}", name, t, direction.name);
+    };
+    times.push_back(time_change(i, t, x, d));
+    std::vector<std::vector<double>> beside;
+    for (const auto& neighbour : neighbours(d)) {
+      beside.push_back(own);
+      apply_reset(in_segment(*neighbour), i, t, beside.back());
+    }
+    const std::vector<double> of_scene = own_slopes(d, after, beside, what);
+    std::vector<double> s = sensitivity(x, d);
+    for (std::size_t k = 0; k < n_; ++k) s[k] += before[k] * times[d];
+    const std::vector<double> of_state = along(t, own, times[d], s, what, [&](double at, std::vector<double> state) {
+      apply_reset(own_, i, at, state);
+      return state;
+    });
+    for (std::size_t k = 0; k < n_; ++k) s_after.push_back(direction.scale * (of_state[k] + of_scene[k]));
+  }
+  std::copy(after.begin(), after.end(), point.x.begin());
+  own_.context.freeze_branches(t, after.data(), true);
+  if (!rhs(t, after.data(), behind)) return true;
+  for (std::size_t d = 0; d < directions_.size(); ++d) {
+    const double by = directions_[d].scale * times[d];
+    for (std::size_t k = 0; k < n_; ++k) point.x[(d + 1) * n_ + k] = s_after[d * n_ + k] - by * behind[k];
+  }
+  return true;
+}
+
+bool VariationalJumps::cross_surface(const eom::EventPoint& point) {
+  auto& context = own_.context;
+  std::vector<double> before(n_), after(n_);
+  const bool known = rhs(point.t, point.x.data(), before);
+  const std::vector<double> x(point.x.begin(), point.x.end());
+  const eom::ModeArray mode = context.model.mode();
+  context.kinks.flip_branch(point.t, point.crossing.function - context.events.first_kink(), point.crossing.up);
+  const eom::ModeArray flipped = context.model.mode();
+  if (!known || !rhs(point.t, point.x.data(), after)) return true;  // the integration reports it
+  double jump = 0;
+  for (std::size_t i = 0; i < n_; ++i) jump = std::max(jump, std::abs(before[i] - after[i]));
+  if (jump <= continuous * largest(before)) return false;
+  for (std::size_t d = 0; d < directions_.size(); ++d) {
+    context.model.set_mode(mode);
+    const double by = directions_[d].scale * time_change(point.crossing.function, point.t, x, d);
+    for (std::size_t i = 0; i < n_; ++i) point.x[(d + 1) * n_ + i] += by * (before[i] - after[i]);
+  }
+  context.model.set_mode(flipped);
+  return true;
+}
+
+/// The change along direction d of the time at which an event function is 0. x: with every s.
+double VariationalJumps::time_change(std::size_t function, double t, const std::vector<double>& x, std::size_t d) {
+  const std::vector<double> own = state_of(x);
+  const auto value = [&](VariationalEquations& in, double at, const std::vector<double>& state) -> std::vector<double> {
+    std::vector<double> g(in.context.events.size());
+    if (in.context.events(at, state.data(), g.data()) != 0) return {std::nan("")};
+    return {g[function]};
+  };
+  const auto what = [&] {
+    return fmt::format("the time t = {} of an event or kink does not change smoothly with {}", t, directions_[d].name);
+  };
+  const auto own_value = [&](double at, const std::vector<double>& state) { return value(own_, at, state); };
+  const double of_scene = by_scene(d, t, own, what, value)[0];
+  const double of_state = along(t, own, 0, sensitivity(x, d), what, own_value)[0];
+  std::vector<double> f(n_);
+  if (!rhs(t, own.data(), f)) refuse_derivative(what());
+  const double dt = -(of_scene + of_state) / along(t, own, 1, f, what, own_value)[0];
+  if (!std::isfinite(dt)) refuse_derivative(what());
+  return dt;
+}
+
+/// A scene beside that of the run, in the segment and the mode of the run.
+VariationalEquations& VariationalJumps::in_segment(VariationalEquations& neighbour) {
+  neighbour.enter(segment_);
+  neighbour.context.model.set_mode(own_.context.model.mode());
+  return neighbour;
+}
+
+const std::vector<std::unique_ptr<VariationalEquations>>& VariationalJumps::neighbours(std::size_t d) {
+  neighbours_.resize(directions_.size());
+  std::vector<std::unique_ptr<VariationalEquations>>& made = neighbours_[d];
+  if (!made.empty()) return made;
+  for (const Scene& scene : directions_[d].beside)
+    made.push_back(std::make_unique<VariationalEquations>(problem_in(scene, own_.problem), kink_times(scene)));
+  return made;
+}
+
+/// The event that ended the run.
+std::optional<std::size_t> VariationalJumps::stopping_event() const {
+  if (motion_.outcome != eom::Outcome::stopped_by_event) return std::nullopt;
+  for (auto event = motion_.events.rbegin(); event != motion_.events.rend(); ++event) {
+    if (event->kind != "stop") continue;
+    for (std::size_t i = 0; i < own_.problem.events.size(); ++i) {
+      if (own_.problem.events[i].name == event->name) return i;
+    }
+  }
+  refuse_derivative("the run is stopped by what is no event of the model");
+}
+
+}  // namespace eomgen::run

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What interrupts a run without contacts, for the derivatives s of its state along directions of change (the formulas
+// are in variational.hpp): samples and kinks at times, surfaces of kinks, resets at events, the end. In: a run,
+// directions, the state x with every s. Out: x and every s behind the interruption.
+#pragma once
+
+#include <eom/events/integrate.hpp>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "run/direction.hpp"
+#include "run/runner.hpp"
+#include "run/variational_equations.hpp"
+
+namespace eomgen::run {
+
+class VariationalJumps {
+ public:
+  /// All arguments have to outlive it. A direction without scenes beside it changes the state alone.
+  VariationalJumps(const RunRequest& request, const RunResult& motion, const std::string& solver,
+                   const std::vector<Direction>& directions);
+
+  VariationalEquations& equations() { return own_; }
+  /// Number of states of x.
+  std::size_t states() const { return n_; }
+  /// The segment between kinks in time, from start() on.
+  std::size_t segment() const { return segment_; }
+  bool is_last_segment() const { return segment_ == own_.kinks.size() || own_.kinks[segment_].after >= motion_.t; }
+  double segment_end() const { return is_last_segment() ? motion_.t : own_.kinks[segment_].before; }
+  /// Which events and surfaces interrupt.
+  std::vector<eom::EventFunction> watched_functions() const;
+
+  // The following change total.x or point.x: x, then s of each direction times its scale. False of those with a result:
+  // f has no value, and the run ends. All throw Error{stage "run"} if an interruption does not follow smoothly.
+
+  /// At the start: the samples there, and s at the fixed time t0.
+  bool start(eom::Result& total);
+  /// At the end of a segment that is not the last one. The next one begins.
+  bool cross_kink_in_time(eom::Result& total);
+  /// At the end of the run: s at the moving end. It appends the change of the time of the end per direction, times the
+  /// scale.
+  bool end(eom::Result& total);
+  /// At an event or the surface of a kink that depends on the state. False: x and s go on unchanged.
+  bool cross_event(const eom::EventPoint& point);
+
+  /// A description for a refusal.
+  using What = std::function<std::string()>;
+  using Values = std::function<std::vector<double>(double t, std::vector<double> x)>;
+  using ValuesIn =
+      std::function<std::vector<double>(VariationalEquations& in, double t, const std::vector<double>& x)>;
+  /// The derivative of values at (t, x) along direction d at fixed t and x: by everything in the scene.
+  std::vector<double> by_scene(std::size_t d, double t, const std::vector<double>& x, const What& what,
+                               const ValuesIn& values);
+  /// The derivative of values along (dt, dx), by differences as wide as they are smooth.
+  std::vector<double> along(double t, const std::vector<double>& x, double dt, const std::vector<double>& dx,
+                            const What& what, const Values& values) const;
+
+ private:
+  std::vector<double> state_of(const std::vector<double>& x) const;
+  std::vector<double> sensitivity(const std::vector<double>& x, std::size_t d) const;
+  bool shift(eom::Result& total, const std::vector<double>& dt);
+  std::vector<double> changes_of_time(const std::function<double(const Direction&)>& dt) const;
+  void require_samples_to_stay(const std::vector<DueSample>& due);
+  bool cross(VariationalEquations& in, std::vector<double>& x) const;
+  void change_by_impulse(const std::vector<double>& x, const std::vector<double>& after, std::size_t d,
+                         std::vector<double>& out);
+  void change_by_samples(const std::vector<DueSample>& due, eom::Result& total, const std::vector<double>& dt);
+  bool reset(const eom::EventPoint& point);
+  bool cross_surface(const eom::EventPoint& point);
+  double time_change(std::size_t function, double t, const std::vector<double>& x, std::size_t d);
+  std::vector<double> own_slopes(std::size_t d, const std::vector<double>& middle,
+                                 const std::vector<std::vector<double>>& beside, const What& what) const;
+  VariationalEquations& in_segment(VariationalEquations& neighbour);
+  const std::vector<std::unique_ptr<VariationalEquations>>& neighbours(std::size_t d);
+  std::optional<std::size_t> stopping_event() const;
+  bool rhs(double t, const double* x, std::vector<double>& f) { return own_.context.rhs(t, x, f.data()) == 0; }
+
+  const Scene& scene_;
+  const RunResult& motion_;
+  const std::vector<Direction>& directions_;
+  VariationalEquations own_;
+  std::size_t n_, segment_ = 0;
+  std::vector<double> f_;
+  std::vector<std::vector<std::unique_ptr<VariationalEquations>>> neighbours_;  // per direction, made where needed
+};
+
+}  // namespace eomgen::run

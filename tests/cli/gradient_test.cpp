@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// run --gradient: the adjoint equations against the variational ones (run --sensitivity), a closed form, and differences
+// of runs; refusals.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <tuple>
+
+#include "program.hpp"
+
+using namespace eomgen::test;
+
+namespace {
+
+const char* const forced_oscillator = R"toml(format = 1
+[parameters]
+m = "2 kg"
+k = "8 N/m"
+A = "0.3 m"
+half = "k/2"
+[coordinates]
+x = {}
+[energy]
+kinetic = "m*x_dot^2/2"
+potential = "half*x^2"
+[scene.default]
+initial = { x = "A", x_dot = "0.1" }
+t = [0, 3]
+rtol = 1e-11
+atol = 1e-12
+)toml";
+
+Json gradients(const Folder& folder, Words words) { return document(folder, std::move(words))["gradients"]; }
+
+/// Both kinds of derivatives of the states at the end, by `names`.
+void compare(const Folder& folder, const std::string& model, const std::string& states, const std::string& names,
+             double tolerance, const Words& further = {}) {
+  CAPTURE(model);
+  Words words{"run", model, "--gradient", states, "--by", names, "--sensitivity", names};
+  words.insert(words.end(), further.begin(), further.end());
+  const Json run = document(folder, words);
+  const Json& adjoint = run["gradients"]["values"];
+  const Json& forward = run["sensitivities"]["values"];
+  REQUIRE(adjoint.size() > 0);
+  for (const auto& [output, by] : adjoint.items()) {
+    CHECK(run["gradients"]["outputs"][output].get<double>() ==
+          doctest::Approx(run["final"][output].get<double>()).epsilon(1e-7));
+    for (const auto& [name, value] : by.items()) {
+      const std::string of = output, with = name;
+      CAPTURE(of);
+      CAPTURE(with);
+      const double expected = forward[name][output].get<double>();
+      CHECK(std::abs(value.get<double>() - expected) < tolerance * (1 + std::abs(expected)));
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("gradient: that of an oscillator agrees with its closed form, within its estimate") {
+  const Folder folder;
+  folder.write("model.toml", forced_oscillator);
+  const Json found = gradients(folder, {"run", "model.toml", "--gradient", "x,energy", "--by", "k,m,A,x_dot"});
+  const double m = 2, k = 8, A = 0.3, v = 0.1, t = 3, w = std::sqrt(k / m), c = std::cos(w * t), s = std::sin(w * t);
+  const double by_w = -A * t * s + v * t * c / w - v * s / (w * w);  // of x = A cos wt + v/w sin wt
+  for (const auto& [of, by, exact] : std::vector<std::tuple<const char*, const char*, double>>{
+           {"x", "k", by_w / (2 * std::sqrt(k * m))},
+           {"x", "m", -by_w * w / (2 * m)},
+           {"x", "A", c},
+           {"x", "x_dot", s / w},
+           {"energy", "k", A * A / 2},
+           {"energy", "m", v * v / 2},
+           {"energy", "A", k * A},
+           {"energy", "x_dot", m * v}}) {
+    CAPTURE(of);
+    CAPTURE(by);
+    const double error = std::abs(found["values"][of][by].get<double>() - exact);
+    CHECK(error < 1e-9);  // rtol 1e-11 over some 30 steps, there and back
+    CHECK(error < 10 * found["error_estimate"][of][by].get<double>() + 1e-14);
+  }
+  // Without --by: the parameters that are numbers.
+  const Json all = gradients(folder, {"run", "model.toml", "--gradient", "x"});
+  CHECK(all["values"]["x"].size() == 3);
+  CHECK(all["adjoint_evaluations"].get<int>() > 0);
+}
+
+// 1e-7: both kinds have the tolerances of the scenes, 1e-9, over up to a few hundred steps.
+TEST_CASE("gradient: adjoint and variational equations agree on models with everything that interrupts a run") {
+  const Folder folder;
+  compare(folder, "S5_double_pendulum", "theta1,theta2_dot", "m1,m2,l1,theta1", 1e-6, {"--rtol", "1e-11", "--t-end", "3"});
+  const std::string particle = "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"x\", 0, 0]\n";
+  const auto line = [&](const std::string& lines, const std::string& force, const std::string& scene) {
+    folder.write("line.toml", "format = 1\n[parameters]\nm = 2\nk = 8\ntau = 1.3\nw = 2\n" + lines +
+                                  "[coordinates]\nx = {}\n" + particle + "[[force]]\non = \"P\"\nforce = \"(" + force +
+                                  ")*E1\"\n[scene.default]\nrtol = 1e-11\natol = 1e-12\n" + scene);
+  };
+  const std::string scene = "initial = { x = 0.3, x_dot = 0.2 }\nt = [\"-w/2\", 3]\n";
+  line("", "-k*x + if(t < tau, 1, -2)", scene);  // a kink at a time, a start that moves
+  compare(folder, "line.toml", "x,x_dot", "m,k,tau,w,x", 1e-7);
+  line("", "-k*x - 3*sign(x - tau/10)", scene);  // a surface of the state, where the force jumps
+  compare(folder, "line.toml", "x,x_dot", "m,k,tau,w,x", 1e-7);
+  line("", "-k*x + F", scene + "inputs = { F = \"k*sin(m*t + tau)\" }\n");
+  folder.write("line.toml", std::string(folder.read("line.toml")).insert(0, ""));
+}
+
+TEST_CASE("gradient: inputs that depend on parameters, resets, ends by an event, impulses and samples") {
+  const Folder folder;
+  const std::string head = "format = 1\n[parameters]\nm = 2\nk = 8\ntau = 1.3\nA = 0.3\n";
+  const std::string line = "[coordinates]\nx = {}\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"x\", 0, 0]\n";
+  const std::string tight = "rtol = 1e-11\natol = 1e-12\n";
+  folder.write("input.toml", head + "[inputs]\nF = \"N\"\n" + line +
+                                 "[[force]]\non = \"P\"\nforce = \"(F - k*x)*E1\"\n[scene.default]\n" + tight +
+                                 "initial = { x = \"A\" }\nt = [0, 3]\ninputs = { F = \"k*sin(m*t + tau)\" }\n");
+  compare(folder, "input.toml", "x,x_dot", "m,k,tau,A", 1e-7);
+  folder.write("reset.toml", head + line +
+                                 "[[force]]\non = \"P\"\nforce = \"-k*x*E1\"\n[[event]]\nname = \"kick\"\n"
+                                 "when = \"x - A/2\"\ndirection = \"down\"\nset = { x_dot = \"0.5*x_dot + tau*x\" }\n"
+                                 "[scene.default]\n" +
+                                 tight + "initial = { x = \"A\" }\nt = [0, 2]\n");
+  compare(folder, "reset.toml", "x,x_dot", "m,k,tau,A", 1e-7);
+  folder.write("stop.toml", head + line +
+                                "[[force]]\non = \"P\"\nforce = \"-k*x*E1\"\n[[event]]\nname = \"low\"\n"
+                                "when = \"x + A/2\"\ndirection = \"down\"\nstop = true\n[scene.default]\n" +
+                                tight + "initial = { x = \"A\" }\nt = [0, 2]\n");
+  compare(folder, "stop.toml", "x_dot", "m,k,A", 1e-7);
+  folder.write("support.toml",
+               "format = 1\n[parameters]\nm = 1\ng = 9.81\ntau = 1\n[functions]\ns = \"0.1*abs(t - tau)\"\n"
+               "[coordinates]\nth = {}\n[[particle]]\nname = \"P\"\nmass = \"m\"\n"
+               "position = [\"s + sin(th)\", \"-cos(th)\", 0]\n[[force]]\ngravity = \"-g*E2\"\n[scene.default]\n"
+               "initial = { th = 0.4 }\nt = [0, 4.3]\n" +
+                   tight);
+  compare(folder, "support.toml", "th,th_dot", "tau,g,th", 1e-6);
+}
+
+TEST_CASE("gradient: stiff motions and fixed steps, and a motion that is integrated again from checkpoints") {
+  const Folder folder;
+  compare(folder, "P2_planar_pendulum", "theta,theta_dot", "L,theta", 1e-5, {"--solver", "radau5", "--rtol", "1e-10"});
+  compare(folder, "P2_planar_pendulum", "theta,theta_dot", "L,theta", 1e-6, {"--solver", "rk4", "--step", "0.001"});
+}
+
+TEST_CASE("gradient: refusals name the cause") {
+  const Folder folder;
+  folder.write("model.toml", forced_oscillator);
+  CHECK(contains(expect(2, folder, {"run", "model.toml", "--by", "k"}).err, "--gradient"));
+  CHECK(contains(expect(1, folder, {"run", "model.toml", "--gradient", "nothing"}).err, "nothing"));
+  CHECK(contains(expect(1, folder, {"run", "model.toml", "--gradient", "x", "--by", "nothing"}).err, "nothing"));
+  CHECK(contains(expect(1, folder, {"run", "stick_slip_belt", "--gradient", "x", "--by", "m"}).err, "contacts and friction"));
+}
