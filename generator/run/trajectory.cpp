@@ -22,7 +22,6 @@ Trajectory::Trajectory(std::size_t states, int dense_order, std::size_t budget)
 }
 
 void Trajectory::begin(double t, std::span<const double> x) {
-  if (!parts_.empty() && parts_.back().ends.empty()) parts_.pop_back();
   parts_.push_back({t, t, {x.begin(), x.end()}});
 }
 

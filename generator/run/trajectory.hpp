@@ -25,7 +25,7 @@ class Trajectory {
   /// dense_order: of the method. budget: bytes of stored polynomials.
   Trajectory(std::size_t states, int dense_order, std::size_t budget);
 
-  /// A part begins here; a part without a step is left out.
+  /// A part begins here. It may stay without a step.
   void begin(double t, std::span<const double> x);
   /// Appends a step to the last part. A long part continues as a new one.
   void add(const eom::StepView& step);

@@ -23,6 +23,17 @@ double largest(const std::vector<double>& values) {
   return size;
 }
 
+/// Whether slopes by narrower differences are those by wider ones, but for their rounding. Far from the point a function
+/// may be as smooth, with another slope.
+bool agree(const Slopes& wider, const Slopes& narrower, const std::vector<double>& middle, double step) {
+  constexpr double tolerance = 1e-6, rounding = 1e-12;
+  for (std::size_t i = 0; i < middle.size(); ++i) {
+    const double allowed = tolerance * std::abs(narrower.value[i]) + rounding * std::abs(middle[i]) / step;
+    if (!(std::abs(wider.value[i] - narrower.value[i]) <= allowed)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 VariationalJumps::VariationalJumps(const RunRequest& request, const RunResult& motion, const std::string& solver,
@@ -205,11 +216,9 @@ std::vector<double> VariationalJumps::along(double t, const std::vector<double>&
                                             const std::vector<double>& dx, const What& what,
                                             const Values& values) const {
   const std::vector<double> middle = values(t, x);
-  const double size = largest(dx);
-  if (size == 0 && dt == 0) return std::vector<double>(middle.size(), 0.0);
-  const double widest = std::max(size > 0 ? std::max(largest(x), scene_.atol) / size : 0,
-                                 dt != 0 ? (scene_.t1 - scene_.t0) / std::abs(dt) : 0);
-  double step = std::ldexp(1.0, std::ilogb(widest));
+  if (largest(dx) == 0 && dt == 0) return std::vector<double>(middle.size(), 0.0);
+  double step = std::ldexp(1.0, std::ilogb(widest_step(x, dt, dx)));
+  std::optional<Slopes> wider;
   for (int attempt = 0; attempt < most_differences; ++attempt) {
     step = std::ldexp(step, smaller_differences);
     std::vector<std::vector<double>> beside;
@@ -219,9 +228,24 @@ std::vector<double> VariationalJumps::along(double t, const std::vector<double>&
       beside.push_back(values(t + offset * dt, std::move(at)));
     }
     Slopes found = slopes(middle, beside, step);
-    if (found.smooth) return found.value;
+    if (wider && found.smooth && agree(*wider, found, middle, step)) return wider->value;
+    wider.reset();
+    if (found.smooth) wider = std::move(found);
   }
   refuse_derivative(what());
+}
+
+/// The components that move, and the time, by as much as they are.
+double VariationalJumps::widest_step(const std::vector<double>& x, double dt, const std::vector<double>& dx) const {
+  constexpr double moves = 1e-8;  // of the largest change: less is rounding
+  const double size = largest(dx), by_time = (scene_.t1 - scene_.t0) / std::abs(dt);
+  if (size == 0) return by_time;
+  double widest = 0;
+  for (std::size_t i = 0; i < n_; ++i) {
+    if (std::abs(dx[i]) > moves * size) widest = std::max(widest, std::abs(x[i] / dx[i]));
+  }
+  if (widest * size <= scene_.atol) widest = std::max(largest(x), scene_.atol) / size;
+  return dt == 0 ? widest : std::min(widest, by_time);
 }
 
 /// Derivatives along the scenes beside that of the run. beside: the values in each.

@@ -59,6 +59,7 @@ class VariationalJumps {
                             const What& what, const Values& values) const;
 
  private:
+  double widest_step(const std::vector<double>& x, double dt, const std::vector<double>& dx) const;
   std::vector<double> state_of(const std::vector<double>& x) const;
   std::vector<double> sensitivity(const std::vector<double>& x, std::size_t d) const;
   bool shift(eom::Result& total, const std::vector<double>& dt);

@@ -428,3 +428,21 @@ TEST_CASE("sensitivity: values without derivative are refused with a remedy") {
                line_text("w = 1e-3\n", "1000*exp(-((x - 3)/w)^2)", "initial = { x_dot = 1 }\nt = [0, 10]\n"));
   refused({"run", "model.toml", "--sensitivity", "w"}, "something on the way is not differentiated");
 }
+
+// The reset of a tick is a root of the velocity, and almost linear far from it. All slopes at the tick are across it, so
+// that a rounding error is the change of its time.
+TEST_CASE("sensitivity: slopes of a reset are those at the state where it happens") {
+  const Folder folder;
+  const Json found =
+      document(folder, {"run", "clock_escapement", "--sensitivity", "phi", "--t-end", "1"})["sensitivities"]["values"];
+  for (const char* state : {"phi", "phi_dot"}) {
+    CAPTURE(state);
+    const double h = 1e-4;
+    const auto end = [&](double phi) {
+      return document(folder, {"run", "clock_escapement", "--set", "phi=" + std::to_string(phi), "--t-end", "1",
+                               "--rtol", "1e-12", "--atol", "1e-13"})["final"][state]
+          .get<double>();
+    };
+    CHECK(std::abs(found["phi"][state].get<double>() - (end(0.5 + h) - end(0.5 - h)) / (2 * h)) < 1e-6);  // h^2
+  }
+}

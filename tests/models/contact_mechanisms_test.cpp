@@ -30,10 +30,10 @@ TEST_CASE("compass_feet: the strike of a rough foot is that of the gait, at all 
     CHECK(run.simulation.result.contact_residual < 1e-14);  // of the impulses, in the last digits
     for (std::size_t i = 0; i < run.rows.size(); ++i) {
       if (run.rows.t[i] <= events[0].t) continue;
-      // The foot stands where it struck.
+      // The foot stands where it struck. Rows between steps have the errors of the dense output.
       const double L = run.parameter("a") + run.parameter("b");
       CHECK(std::abs(run.rows.at(i, "x_dot") + L * std::cos(run.rows.at(i, "right")) * run.rows.at(i, "right_dot")) <
-            rounding);
+            std::max(1e-4 * rtol, rounding));
       CHECK(run.rows.at(i, "reaction.left_foot") == 0);
       CHECK(run.rows.at(i, "reaction.right_foot") > 0);
     }

@@ -226,6 +226,8 @@ class Contacts {
 
   /// Handles an impact at contact j, which is open. It remains open if it bounces.
   Transition apply_impact(double t, std::span<double> x, int mode, std::size_t j, bool bounces = true) {
+    // The gap opens: after an impact its rounding errors cross zero once more.
+    if (bounces && close_together_.empty() && motion_.gap_rate(t, x, j) > motion_.negligible_speed()) return {mode};
     hits_.add(j);
     if (const std::vector<std::size_t> all = std::exchange(close_together_, {}); !all.empty()) {
       const std::vector<double> before(x.begin(), x.end());
