@@ -142,7 +142,9 @@ class ModeSwitch {
       events.push_back({t, next->kind, next->name, mode, next->mode});
       for (const std::string& name : next->further_names) events.push_back({t, next->kind, name, mode, next->mode});
     }
+    const bool goes_on = next->kind.empty() && next->mode == mode && next->outcome == Outcome::done;
     mode = next->mode;
+    if (goes_on) return EventAction::resume;  // nothing has changed: the function is on its other side now
     watch(functions);
     if (next->outcome == Outcome::done) return EventAction::restart;
     end_outcome = next->outcome;
