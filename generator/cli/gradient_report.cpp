@@ -8,14 +8,13 @@
 namespace eomgen::cli {
 
 std::string text_of(const run::Gradients& found) {
-  std::string out =
-      fmt::format("\ngradients         at t = {}, by the adjoint equations with {}: {}\n", found.t, found.solver,
-                  eom::name(found.outcome));
+  std::string out = fmt::format("\ngradients         at t = {}, by the adjoint equations with {}: {}\n", found.t,
+                                found.solver, eom::name(found.outcome));
   for (const run::Gradient& gradient : found.list) {
     for (std::size_t d = 0; d < found.directions.size(); ++d)
-      out += fmt::format("  d {} / d {:<16} {:>24}{}\n", gradient.of, found.directions[d],
-                         unsigned_zero(gradient.by[d]),
-                         gradient.error.empty() ? "" : fmt::format("   +- {:.1e}", gradient.error[d]));
+      out +=
+          fmt::format("  d {} / d {:<16} {:>24}{}\n", gradient.of, found.directions[d], unsigned_zero(gradient.by[d]),
+                      gradient.error.empty() ? "" : fmt::format("   +- {:.1e}", gradient.error[d]));
   }
   return found.estimate_note.empty() ? out : out + "  " + found.estimate_note + "\n";
 }
@@ -39,7 +38,8 @@ Json json_of(const run::Gradients& found) {
           {"values", values},
           {"error_estimate", estimated ? errors : Json(nullptr)},
           {"rhs_evaluations", found.statistics.rhs_evaluations},
-          {"adjoint_evaluations", found.adjoint_evaluations}};
+          {"adjoint_evaluations", found.adjoint_evaluations},
+          {"seconds", found.seconds}};
 }
 
 }  // namespace eomgen::cli

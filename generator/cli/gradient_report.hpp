@@ -11,7 +11,7 @@ namespace eomgen::cli {
 
 std::string text_of(const run::Gradients& found);
 /// {"method", "t", "outcome", "outputs": {output: value}, "values": {output: {of: derivative}}, "error_estimate": as
-/// values or null, "rhs_evaluations", "adjoint_evaluations"}
+/// values or null, "rhs_evaluations", "adjoint_evaluations", "seconds"}
 Json json_of(const run::Gradients& found);
 
 }  // namespace eomgen::cli

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/gradient_report.hpp"
 #include "cli/operations.hpp"
 #include "cli/output.hpp"
-#include "cli/gradient_report.hpp"
 #include "cli/sensitivity_report.hpp"
 
 namespace eomgen::cli {

@@ -13,7 +13,8 @@ namespace eomgen::run {
 
 void require_derivatives(const RunRequest& request, const RunResult& result) {
   if (!request.code.contacts.empty() || !request.code.contact_set.empty())
-    refuse_derivative("contacts and friction change the equations during the run, and derivatives of the end jump there");
+    refuse_derivative(
+        "contacts and friction change the equations during the run, and derivatives of the end jump there");
   for (std::size_t i = 0; i < request.events.size(); ++i) {
     if (request.events[i].stop && !request.events[i].reset.set.empty())
       refuse_derivative(fmt::format("the event '{}' ends the run and changes the state there", request.events[i].name));

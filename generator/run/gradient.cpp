@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <eom/error_estimate.hpp>
 #include <eom/events/integrate.hpp>
@@ -142,8 +143,8 @@ class GradientRun {
   void begin_piece(double t, const std::vector<double>& x) {
     end_piece();
     trajectory_.begin(t, x);
-    history_.emplace_back(Piece{trajectory_.parts() - 1, trajectory_.parts(), jumps_.segment(),
-                                jumps_.equations().context.model.mode()});
+    history_.emplace_back(
+        Piece{trajectory_.parts() - 1, trajectory_.parts(), jumps_.segment(), jumps_.equations().context.model.mode()});
   }
   void end_piece() {
     if (history_.empty() || !std::holds_alternative<Piece>(history_.back())) return;
@@ -162,8 +163,7 @@ class GradientRun {
     const auto cross = [&](const eom::EventPoint& point) {
       end_piece();
       std::vector<double> x = extended({point.x.begin(), point.x.end()});
-      const bool changed =
-          jumps_.cross_event({point.t, x, point.crossing, point.functions, point.simultaneous});
+      const bool changed = jumps_.cross_event({point.t, x, point.crossing, point.functions, point.simultaneous});
       std::copy_n(x.begin(), n_, point.x.begin());
       if (changed) note_jump(x);
       x.resize(n_);
@@ -203,8 +203,8 @@ class GradientRun {
     return true;
   }
 
-  /// w at the end, without the changes there; appends the value of the output to `values`. gradient: what the changes at
-  /// the end add.
+  /// w at the end, without the changes there; appends the value of the output to `values`. gradient: what the changes
+  /// at the end add.
   std::vector<double> end_slopes(const std::string& output, double t, const std::vector<double>& x,
                                  std::vector<double>& values, std::vector<double>& gradient) {
     const std::vector<double> own(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n_));
@@ -285,9 +285,7 @@ class GradientRun {
     const double t0 = trajectory_.part(k).t0, t1 = trajectory_.part(k).t1;
     const std::vector<double> x0 = trajectory_.part(k).x0;
     trajectory_.restart(k);
-    const auto rhs = [&](double t, const double* x, double* dx) {
-      return jumps_.equations().context.rhs(t, x, dx);
-    };
+    const auto rhs = [&](double t, const double* x, double* dx) { return jumps_.equations().context.rhs(t, x, dx); };
     const eom::Result again = eom::integrate(solver_, rhs, t0, x0, t1, options, [&](const eom::StepView& step) {
       trajectory_.add_to(k, step);
       return true;
@@ -348,7 +346,9 @@ Gradients integrate_gradients(const RunRequest& request, const RunResult& motion
   for (const Direction& d : wanted.directions) result.directions.push_back(d.name);
   const eom::Options options = derivative_options(request, result.solver);
   GradientRun run(request, motion, result.solver, wanted);
+  const auto start = std::chrono::steady_clock::now();
   const eom::Result end = run(options);
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.outcome = end.outcome;
   result.statistics = end.statistics;
   result.adjoint_evaluations = run.adjoint_evaluations();

@@ -40,6 +40,7 @@ struct Gradients {
   std::vector<Gradient> list;
   std::size_t adjoint_evaluations = 0;
   eom::Statistics statistics;  // of the motion; with the steps backward
+  double seconds = 0;          // of both integrations, without the estimate
   std::string estimate_note;
 };
 

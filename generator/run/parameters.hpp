@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Checks of a scene's parameters, which the reader made only for the default values, and which of them are independent.
-// In: parameters in many digits, or a scene. Out: nothing, or Error{stage "scene"} with the position in the file; names.
+// In: parameters in many digits, or a scene. Out: nothing, or Error{stage "scene"} with the position in the file;
+// names.
 #pragma once
 
 #include <cln/real.h>

@@ -21,9 +21,7 @@ Trajectory::Trajectory(std::size_t states, int dense_order, std::size_t budget)
   places_.back() = 1;
 }
 
-void Trajectory::begin(double t, std::span<const double> x) {
-  parts_.push_back({t, t, {x.begin(), x.end()}});
-}
+void Trajectory::begin(double t, std::span<const double> x) { parts_.push_back({t, t, {x.begin(), x.end()}}); }
 
 void Trajectory::add(const eom::StepView& step) {
   if (parts_.back().ends.size() >= longest_part) begin(step.t0, step.x0);
@@ -59,7 +57,8 @@ void Trajectory::append(Part& part, const eom::StepView& step) {
 void Trajectory::state(std::size_t k, double t, double* x) const {
   const Part& part = parts_[k];
   const auto end = std::lower_bound(part.ends.begin(), part.ends.end(), t);
-  const std::size_t step = std::min<std::size_t>(static_cast<std::size_t>(end - part.ends.begin()), part.ends.size() - 1);
+  const std::size_t step =
+      std::min<std::size_t>(static_cast<std::size_t>(end - part.ends.begin()), part.ends.size() - 1);
   const double begin = step == 0 ? part.t0 : part.ends[step - 1], place = (t - begin) / (part.ends[step] - begin);
   const double* const nodes = part.nodes.data() + step * places_.size() * n_;
   double sum = 0;

@@ -31,7 +31,8 @@ Problem problem_of(const RunRequest& request, const std::string& solver) {
 }
 
 void refuse_derivative(const std::string& what) {
-  throw Error("run", {}, "no derivatives of the end: " + what, "compare runs with changed values (--set), or sweep over them");
+  throw Error("run", {}, "no derivatives of the end: " + what,
+              "compare runs with changed values (--set), or sweep over them");
 }
 
 std::vector<DueSample> due_samples(const Problem& problem, double from, double until) {
@@ -56,7 +57,7 @@ void take_samples(VariationalEquations& in, const std::vector<DueSample>& due, d
   in.context.model.set_mode(mode);
   if (made.failed || made.stopped)
     refuse_derivative(fmt::format("the sample at t = {} causes an event that {}", t,
-                                   made.failed ? "is undetermined" : "ends the run"));
+                                  made.failed ? "is undetermined" : "ends the run"));
 }
 
 void apply_reset(VariationalEquations& in, std::size_t i, double t, std::vector<double>& x) {

@@ -23,8 +23,8 @@ double largest(const std::vector<double>& values) {
   return size;
 }
 
-/// Whether slopes by narrower differences are those by wider ones, but for their rounding. Far from the point a function
-/// may be as smooth, with another slope.
+/// Whether slopes by narrower differences are those by wider ones, but for their rounding. Far from the point a
+/// function may be as smooth, with another slope.
 bool agree(const Slopes& wider, const Slopes& narrower, const std::vector<double>& middle, double step) {
   constexpr double tolerance = 1e-6, rounding = 1e-12;
   for (std::size_t i = 0; i < middle.size(); ++i) {
@@ -139,7 +139,7 @@ void VariationalJumps::require_samples_to_stay(const std::vector<DueSample>& due
       for (const DueSample& sample : due) {
         if (eom::hybrid::sample_between(in.samples[sample.kind], in.t0, in.t0) != sample.k)
           refuse_derivative(fmt::format("the sample '{}' at the start moves away from it with {}",
-                                         own_.problem.samples[sample.kind].name, directions_[d].name));
+                                        own_.problem.samples[sample.kind].name, directions_[d].name));
       }
     }
   }
@@ -275,7 +275,7 @@ bool VariationalJumps::reset(const eom::EventPoint& point) {
   for (const std::size_t j : point.simultaneous) {
     if (j < own_.problem.events.size())
       refuse_derivative(fmt::format("the events '{}' and '{}' occur at the same time t = {}, and their order changes",
-                                     name, own_.problem.events[j].name, t));
+                                    name, own_.problem.events[j].name, t));
   }
   std::vector<double> before(n_), behind(n_), after = own;
   if (!rhs(t, own.data(), before)) return true;  // the integration reports it

@@ -49,8 +49,7 @@ class VariationalJumps {
   /// A description for a refusal.
   using What = std::function<std::string()>;
   using Values = std::function<std::vector<double>(double t, std::vector<double> x)>;
-  using ValuesIn =
-      std::function<std::vector<double>(VariationalEquations& in, double t, const std::vector<double>& x)>;
+  using ValuesIn = std::function<std::vector<double>(VariationalEquations& in, double t, const std::vector<double>& x)>;
   /// The derivative of values at (t, x) along direction d at fixed t and x: by everything in the scene.
   std::vector<double> by_scene(std::size_t d, double t, const std::vector<double>& x, const What& what,
                                const ValuesIn& values);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// run --gradient: the adjoint equations against the variational ones (run --sensitivity), a closed form, and differences
-// of runs; refusals.
+// run --gradient: the adjoint equations against the variational ones (run --sensitivity), a closed form, and
+// differences of runs; refusals.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -63,15 +63,15 @@ TEST_CASE("gradient: that of an oscillator agrees with its closed form, within i
   const Json found = gradients(folder, {"run", "model.toml", "--gradient", "x,energy", "--by", "k,m,A,x_dot"});
   const double m = 2, k = 8, A = 0.3, v = 0.1, t = 3, w = std::sqrt(k / m), c = std::cos(w * t), s = std::sin(w * t);
   const double by_w = -A * t * s + v * t * c / w - v * s / (w * w);  // of x = A cos wt + v/w sin wt
-  for (const auto& [of, by, exact] : std::vector<std::tuple<const char*, const char*, double>>{
-           {"x", "k", by_w / (2 * std::sqrt(k * m))},
-           {"x", "m", -by_w * w / (2 * m)},
-           {"x", "A", c},
-           {"x", "x_dot", s / w},
-           {"energy", "k", A * A / 2},
-           {"energy", "m", v * v / 2},
-           {"energy", "A", k * A},
-           {"energy", "x_dot", m * v}}) {
+  for (const auto& [of, by, exact] :
+       std::vector<std::tuple<const char*, const char*, double>>{{"x", "k", by_w / (2 * std::sqrt(k * m))},
+                                                                 {"x", "m", -by_w * w / (2 * m)},
+                                                                 {"x", "A", c},
+                                                                 {"x", "x_dot", s / w},
+                                                                 {"energy", "k", A * A / 2},
+                                                                 {"energy", "m", v * v / 2},
+                                                                 {"energy", "A", k * A},
+                                                                 {"energy", "x_dot", m * v}}) {
     CAPTURE(of);
     CAPTURE(by);
     const double error = std::abs(found["values"][of][by].get<double>() - exact);
@@ -87,7 +87,8 @@ TEST_CASE("gradient: that of an oscillator agrees with its closed form, within i
 // 1e-7: both kinds have the tolerances of the scenes, 1e-9, over up to a few hundred steps.
 TEST_CASE("gradient: adjoint and variational equations agree on models with everything that interrupts a run") {
   const Folder folder;
-  compare(folder, "S5_double_pendulum", "theta1,theta2_dot", "m1,m2,L1,theta1", 1e-6, {"--rtol", "1e-11", "--t-end", "3"});
+  compare(folder, "S5_double_pendulum", "theta1,theta2_dot", "m1,m2,L1,theta1", 1e-6,
+          {"--rtol", "1e-11", "--t-end", "3"});
   const std::string particle = "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"x\", 0, 0]\n";
   const auto line = [&](const std::string& lines, const std::string& force, const std::string& scene) {
     folder.write("line.toml", "format = 1\n[parameters]\nm = 2\nk = 8\ntau = 1.3\nw = 2\n" + lines +
@@ -104,7 +105,8 @@ TEST_CASE("gradient: adjoint and variational equations agree on models with ever
 TEST_CASE("gradient: inputs that depend on parameters, resets, ends by an event, impulses and samples") {
   const Folder folder;
   const std::string head = "format = 1\n[parameters]\nm = 2\nk = 8\ntau = 1.3\nA = 0.3\n";
-  const std::string line = "[coordinates]\nx = {}\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"x\", 0, 0]\n";
+  const std::string line =
+      "[coordinates]\nx = {}\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"x\", 0, 0]\n";
   const std::string tight = "rtol = 1e-11\natol = 1e-12\n";
   folder.write("input.toml", head + "[inputs]\nF = { unit = \"N\", default = 0 }\n" + line +
                                  "[[force]]\non = \"P\"\nforce = \"(F - k*x)*E1\"\n[scene.default]\n" + tight +
@@ -147,5 +149,6 @@ TEST_CASE("gradient: refusals name the cause") {
   CHECK(contains(expect(2, folder, {"run", "model.toml", "--by", "k"}).err, "--gradient"));
   CHECK(contains(expect(2, folder, {"run", "model.toml", "--gradient", "nothing"}).err, "nothing"));
   CHECK(contains(expect(2, folder, {"run", "model.toml", "--gradient", "x", "--by", "nothing"}).err, "nothing"));
-  CHECK(contains(expect(2, folder, {"run", "stick_slip_belt", "--gradient", "x", "--by", "m"}).err, "contacts and friction"));
+  CHECK(contains(expect(2, folder, {"run", "stick_slip_belt", "--gradient", "x", "--by", "m"}).err,
+                 "contacts and friction"));
 }

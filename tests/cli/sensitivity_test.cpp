@@ -429,8 +429,8 @@ TEST_CASE("sensitivity: values without derivative are refused with a remedy") {
   refused({"run", "model.toml", "--sensitivity", "w"}, "something on the way is not differentiated");
 }
 
-// The reset of a tick is a root of the velocity, and almost linear far from it. All slopes at the tick are across it, so
-// that a rounding error is the change of its time.
+// The reset of a tick is a root of the velocity, and almost linear far from it. All slopes at the tick are across it,
+// so that a rounding error is the change of its time.
 TEST_CASE("sensitivity: slopes of a reset are those at the state where it happens") {
   const Folder folder;
   const Json found =
