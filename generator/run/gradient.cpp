@@ -11,6 +11,7 @@
 #include <eom/ode.hpp>
 #include <variant>
 
+#include "run/central_differences.hpp"
 #include "run/derivative_run.hpp"
 #include "run/methods.hpp"
 #include "run/trajectory.hpp"
@@ -208,48 +209,61 @@ class GradientRun {
   std::vector<double> end_slopes(const std::string& output, double t, const std::vector<double>& x,
                                  std::vector<double>& values, std::vector<double>& gradient) {
     const std::vector<double> own(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n_));
-    const auto value = [&](VariationalEquations& in, double at, const std::vector<double>& state) {
-      return std::vector<double>{value_of(output, in, at, state)};
+    const auto value = [&](double at, const std::vector<double>& state) {
+      return std::vector<double>{value_of(output, {scene_.parameters, scene_.inputs}, at, state)};
     };
-    const auto in_own = [&](double at, const std::vector<double>& state) {
-      return value(jumps_.equations(), at, state);
-    };
-    std::vector<double> slopes(n_), unit(n_);
+    std::vector<double> by_state(n_), unit(n_);
     const auto what = [&] { return fmt::format("the output '{}' has no slope at the end", output); };
     for (std::size_t i = 0; i < n_; ++i) {
       unit[i] = 1;
-      slopes[i] = jumps_.along(t, own, 0, unit, what, in_own)[0];
+      by_state[i] = jumps_.along(t, own, 0, unit, what, value)[0];
       unit[i] = 0;
     }
     // The end moves: s there, and the change of its time, follow the s before.
     const double* const s = x.data() + n_;
     const double* const dt = x.data() + n_ * (1 + directions_.size());
     const bool moves = std::any_of(dt, dt + directions_.size(), [](double change) { return change != 0; });
-    const double rate = moves ? jumps_.along(t, own, 1, std::vector<double>(n_, 0.0), what, in_own)[0] : 0;
+    const double rate = moves ? jumps_.along(t, own, 1, std::vector<double>(n_, 0.0), what, value)[0] : 0;
     std::vector<double> w(n_ + scene_.parameters.size() + driven_.size(), 0.0);
-    for (std::size_t i = 0; i < n_; ++i) w[i] = product(slopes.data(), s + i * n_, n_) + rate * dt[i];
+    for (std::size_t i = 0; i < n_; ++i) w[i] = product(by_state.data(), s + i * n_, n_) + rate * dt[i];
     for (std::size_t d = 0; d < count_; ++d) {
-      const auto at_end = [&] {
-        return fmt::format("the output '{}' at the end does not change smoothly with {}", output,
-                           wanted_.directions[d].name);
-      };
-      gradient.push_back(product(slopes.data(), s + (n_ + d) * n_, n_) + rate * dt[n_ + d] +
-                         jumps_.by_scene(n_ + d, t, own, at_end, value)[0]);
+      gradient.push_back(product(by_state.data(), s + (n_ + d) * n_, n_) + rate * dt[n_ + d] +
+                         slope_by_scene(output, wanted_.directions[d], t, own));
     }
-    values.push_back(value_of(output, jumps_.equations(), t, own));
+    values.push_back(value(t, own)[0]);
     return w;
   }
 
-  double value_of(const std::string& output, VariationalEquations& in, double t, const std::vector<double>& x) const {
+  struct Setting {
+    const std::vector<double>& parameters;
+    const std::vector<Signal>& inputs;
+  };
+
+  /// An output at (t, x) in the mode of the run. NaN: it has no value.
+  double value_of(const std::string& output, const Setting& setting, double t, const std::vector<double>& x) {
     const auto state = std::find(state_names_.begin(), state_names_.end(), output);
     if (state != state_names_.end()) return x[static_cast<std::size_t>(state - state_names_.begin())];
-    const eom::hybrid::Code& code = *in.problem.code;
-    std::vector<double> y(code.output_names.size());
-    const auto place = std::find(code.output_names.begin(), code.output_names.end(), output);
-    if (code.outputs(t, x.data(), in.problem.parameters.data(), in.context.model.inputs(t),
-                     in.context.model.mode().data(), y.data()) != 0)
+    const eom::hybrid::Model& model = jumps_.equations().context.model;
+    const eom::hybrid::Code& code = *jumps_.equations().problem.code;
+    for (std::size_t i = 0; i < setting.inputs.size(); ++i) u_[i] = setting.inputs[i](t, model.segment_time());
+    y_.resize(code.output_names.size());
+    if (code.outputs(t, x.data(), setting.parameters.data(), u_.data(), model.mode().data(), y_.data()) != 0)
       return std::nan("");
-    return y[static_cast<std::size_t>(place - code.output_names.begin())];
+    const auto place = std::find(code.output_names.begin(), code.output_names.end(), output);
+    return y_[static_cast<std::size_t>(place - code.output_names.begin())];
+  }
+
+  /// The derivative of an output along a direction at fixed t and x.
+  double slope_by_scene(const std::string& output, const Direction& direction, double t, const std::vector<double>& x) {
+    if (std::find(state_names_.begin(), state_names_.end(), output) != state_names_.end()) return 0;
+    std::vector<std::vector<double>> beside;
+    for (const Scene& scene : direction.beside)
+      beside.push_back({value_of(output, {scene.parameters, scene.inputs}, t, x)});
+    const Slopes found = slopes({value_of(output, {scene_.parameters, scene_.inputs}, t, x)}, beside, direction.step);
+    if (!found.smooth)
+      refuse_derivative(
+          fmt::format("the output '{}' at the end does not change smoothly with {}", output, direction.name));
+    return found.value[0];
   }
 
   bool backward_through(const Piece& piece, eom::Options options, eom::Result& end) {
@@ -322,7 +336,7 @@ class GradientRun {
   std::vector<std::size_t> driven_;  // directions that change inputs
   std::vector<double> w_;            // as of operator()
   std::size_t part_ = 0, adjoint_evaluations_ = 0;
-  std::vector<double> x_, vJ_, vP_, vU_, u_;
+  std::vector<double> x_, y_, vJ_, vP_, vU_, u_;
 };
 
 void require_outputs(const RunRequest& request, const std::vector<std::string>& outputs) {

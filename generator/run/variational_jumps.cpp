@@ -258,6 +258,7 @@ std::vector<double> VariationalJumps::own_slopes(std::size_t d, const std::vecto
   return found.value;
 }
 
+/// The derivative of values at (t, x) along direction d at fixed t and x: by everything in the scene.
 std::vector<double> VariationalJumps::by_scene(std::size_t d, double t, const std::vector<double>& x, const What& what,
                                                const ValuesIn& values) {
   std::vector<std::vector<double>> beside;

@@ -49,15 +49,14 @@ class VariationalJumps {
   /// A description for a refusal.
   using What = std::function<std::string()>;
   using Values = std::function<std::vector<double>(double t, std::vector<double> x)>;
-  using ValuesIn = std::function<std::vector<double>(VariationalEquations& in, double t, const std::vector<double>& x)>;
-  /// The derivative of values at (t, x) along direction d at fixed t and x: by everything in the scene.
-  std::vector<double> by_scene(std::size_t d, double t, const std::vector<double>& x, const What& what,
-                               const ValuesIn& values);
   /// The derivative of values along (dt, dx), by differences as wide as they are smooth.
   std::vector<double> along(double t, const std::vector<double>& x, double dt, const std::vector<double>& dx,
                             const What& what, const Values& values) const;
 
  private:
+  using ValuesIn = std::function<std::vector<double>(VariationalEquations& in, double t, const std::vector<double>& x)>;
+  std::vector<double> by_scene(std::size_t d, double t, const std::vector<double>& x, const What& what,
+                               const ValuesIn& values);
   double widest_step(const std::vector<double>& x, double dt, const std::vector<double>& dx) const;
   std::vector<double> state_of(const std::vector<double>& x) const;
   std::vector<double> sensitivity(const std::vector<double>& x, std::size_t d) const;
