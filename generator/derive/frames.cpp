@@ -4,10 +4,13 @@
 #include <algorithm>
 
 #include "derive/imposition.hpp"
-#include "derive/trees/place_decomposition.hpp"
+#include "mechanics/place_decomposition.hpp"
 
 namespace eomgen::derive {
 namespace {
+
+using mechanics::decompose_place;
+using mechanics::PlaceDecomposition;
 
 using symbolic::Symbol;
 using symbolic::SymbolKind;

@@ -71,9 +71,10 @@ struct EmissionContext {
   std::vector<Quantity> inputs;       // the array u
   std::vector<Quantity> states;  // of first order, all of the model; those in Program::states follow the velocities
   std::string start_parameter;   // name of the parameter for the start time; empty if none
-  std::vector<EventDescription> events;  // all of the model, in declared order
-  std::vector<std::string> frames = {};  // bodies, particles and points in declared order, of the function `frames`
-  std::vector<std::string> singular;     // "sin(phi) = 0"
+  std::vector<EventDescription> events;    // all of the model, in declared order
+  std::vector<std::string> inertial = {};  // inertial parameters, of the function `regressor`
+  std::vector<std::string> frames = {};    // bodies, particles and points in declared order, of the function `frames`
+  std::vector<std::string> singular;       // "sin(phi) = 0"
   double start_time = 0;
   /// Whether an event or a sample changes the state.
   bool has_resets() const;

@@ -276,6 +276,8 @@ std::string info_json(const program::Program& program, const EmissionContext& co
   info["outputs"] = program.outputs;
   info["reactions"] = program.reactions;
   if (program.result_size("frames") > 0) info["frames"] = context.frames;
+  if (program.result_size("regressor") > 0) info["inertial_parameters"] = context.inertial;
+  if (program.result_size("momentum") > 0) info["has_masses"] = true;
   for (std::size_t i = 0; i < program.events.size(); ++i) {
     const EventDescription& event = context.events.at(i);
     info["events"].push_back({{"name", event.name}, {"direction", event.direction}, {"action", event.action}});

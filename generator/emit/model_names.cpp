@@ -50,11 +50,14 @@ ModelNames model_names(const program::Program& program, const EmissionContext& c
   names.first_kink = program.mode_layout().kink(0);
   for (std::size_t k = 0; k < program.kinks.size(); ++k)
     names.sides.push_back(table.declare("side_" + std::to_string(k + 1)));
-  NameTable outputs(longest), reactions(longest), events(longest), frames(longest);
+  NameTable outputs(longest), reactions(longest), events(longest), frames(longest), inertial(longest);
   for (const std::string& name : program.outputs) names.outputs.push_back(outputs.declare(name));
   for (const std::string& name : program.reactions) names.reactions.push_back(reactions.declare(name));
   if (program.result_size("frames") > 0) {
     for (const std::string& name : context.frames) names.frames.push_back(frames.declare(name));
+  }
+  if (program.result_size("regressor") > 0) {
+    for (const std::string& name : context.inertial) names.inertial.push_back(inertial.declare(name));
   }
   for (const std::string& name : program.events) names.events.push_back(events.declare(name));
   for (std::size_t k = 0; k < program.kinks.size(); ++k)

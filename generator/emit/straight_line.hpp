@@ -54,7 +54,7 @@ struct Dialect {
 /// Identifiers of one model, shared by all its functions.
 struct ModelNames {
   std::vector<std::string> state;  // entries of x: coordinates, then velocities
-  std::vector<std::string> parameters, inputs, outputs, reactions, events, frames;
+  std::vector<std::string> parameters, inputs, outputs, reactions, events, frames, inertial;
   std::vector<std::string> sides;     // kinks whose branches `mode` freezes
   std::size_t first_kink = 0;         // entry of `mode`
   std::vector<std::string> contacts;  // per contact: slides_NAME, normal_force_sign_NAME (eom/modes/contact_state.hpp)

@@ -43,6 +43,18 @@ std::string trig_name(const program::Function& function, const program::Instruct
          expressions.unsigned_value(o[1]).text;
 }
 
+namespace {
+
+/// "d/d q": the column of a Jacobian matrix by states, parameters (`_p`) or inputs (`_u`).
+std::string column_name(const std::string& function, const ModelNames& names, std::size_t column) {
+  const std::vector<std::string>& all = function.ends_with("_p")   ? names.parameters
+                                        : function.ends_with("_u") ? names.inputs
+                                                                   : names.state;
+  return fmt::format("d/d {}", all[column]);
+}
+
+}  // namespace
+
 std::string result_entry_name(const program::Function& function, const ModelNames& names, std::size_t result,
                               std::size_t entry) {
   const std::size_t n = names.acceleration.size(), all = names.state.size();
@@ -50,6 +62,14 @@ std::string result_entry_name(const program::Function& function, const ModelName
   if (function.name == "jac" && result == 0 && entry % all == 0) return fmt::format("d/d {}", names.state[entry / all]);
   if (function.name == "jac_p" && entry % all == 0) return fmt::format("d/d {}", names.parameters[entry / all]);
   if (function.name == "jac_u" && entry % all == 0) return fmt::format("d/d {}", names.inputs[entry / all]);
+  if (!names.outputs.empty() && function.name.starts_with("outputs_jac") && result == 0 &&
+      entry % names.outputs.size() == 0)
+    return column_name(function.name, names, entry / names.outputs.size());
+  if (!names.reactions.empty() && function.name.starts_with("reactions_jac") && result == 0 &&
+      entry % names.reactions.size() == 0)
+    return column_name(function.name, names, entry / names.reactions.size());
+  if (function.name == "regressor" && (result > 0 || entry % n == 0))
+    return names.inertial[result > 0 ? entry : entry / n];
   if (function.name == "frames" && result == 0 && entry % 12 == 0) return names.frames[entry / 12];
   if (function.name == "outputs") return names.outputs[entry];
   if (function.name == "reactions") return names.reactions[entry];

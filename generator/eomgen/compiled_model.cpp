@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "derive/frames.hpp"
+#include "derive/inertias.hpp"
 #include "eomgen/compiled_state.hpp"
 #include "eomgen/model.hpp"
 #include "run/bind.hpp"
@@ -69,6 +70,7 @@ CompiledModel::State::State(PreparedRun from, std::shared_ptr<PreparedRuns> cach
   reactions = run.compilation->program.reactions;
   for (const model::Event& event : model.events) events.push_back(event.name);
   if (functions().has("frames")) frames = derive::frame_names(model);
+  if (functions().has("regressor")) inertial_parameters = derive::inertial_parameter_names(model);
   values = values_of(*bound, run.plan->solver, states.size());
   certificate = run.compilation->certificate.summary();
   tier = pipeline::name(run.compilation->tier.tier);
@@ -98,6 +100,11 @@ const std::vector<std::string>& CompiledModel::constraints() const { return stat
 const std::vector<std::string>& CompiledModel::reactions() const { return state_->reactions; }
 const std::vector<std::string>& CompiledModel::events() const { return state_->events; }
 const std::vector<std::string>& CompiledModel::frames() const { return state_->frames; }
+const std::vector<std::string>& CompiledModel::inertial_parameters() const { return state_->inertial_parameters; }
+bool CompiledModel::has_masses() const {
+  const model::Model& model = state_->run.derived->model;
+  return !model.particles.empty() || !model.bodies.empty();
+}
 std::size_t CompiledModel::coordinate_count() const { return state_->code().free.size(); }
 const std::string& CompiledModel::certificate() const { return state_->certificate; }
 const std::string& CompiledModel::tier() const { return state_->tier; }
@@ -185,6 +192,9 @@ int CompiledModel::adjoint(const Arguments& at, double* vJ, double* vP, double* 
 }
 int CompiledModel::hvp(const Arguments& at, double* Hd) const { return EOMGEN_CALL(hvp, Hd); }
 int CompiledModel::inverse(const Arguments& at, double* tau) const { return EOMGEN_CALL(inverse, tau); }
+int CompiledModel::regressor(const Arguments& at, double* Y, double* inertial) const {
+  return EOMGEN_CALL(regressor, Y, inertial);
+}
 int CompiledModel::coriolis(const Arguments& at, double* C) const { return EOMGEN_CALL(coriolis, C); }
 int CompiledModel::gravity(const Arguments& at, double* g) const { return EOMGEN_CALL(gravity, g); }
 int CompiledModel::mass(const Arguments& at, double* M, double* h) const { return EOMGEN_CALL(mass, M, h); }
@@ -195,10 +205,27 @@ int CompiledModel::constraints(const Arguments& at, double* psi, double* A, doub
   return EOMGEN_CALL(constraints, psi, A, b);
 }
 int CompiledModel::reactions(const Arguments& at, double* lambda) const { return EOMGEN_CALL(reactions, lambda); }
+int CompiledModel::reactions_jac(const Arguments& at, double* dldx, double* dldt) const {
+  return EOMGEN_CALL(reactions_jac, dldx, dldt);
+}
+int CompiledModel::reactions_jac_p(const Arguments& at, double* dldp) const {
+  return EOMGEN_CALL(reactions_jac_p, dldp);
+}
+int CompiledModel::reactions_jac_u(const Arguments& at, double* dldu) const {
+  return EOMGEN_CALL(reactions_jac_u, dldu);
+}
 int CompiledModel::outputs(const Arguments& at, double* y) const { return EOMGEN_CALL(outputs, y); }
+int CompiledModel::outputs_jac(const Arguments& at, double* dydx, double* dydt) const {
+  return EOMGEN_CALL(outputs_jac, dydx, dydt);
+}
+int CompiledModel::outputs_jac_p(const Arguments& at, double* dydp) const { return EOMGEN_CALL(outputs_jac_p, dydp); }
+int CompiledModel::outputs_jac_u(const Arguments& at, double* dydu) const { return EOMGEN_CALL(outputs_jac_u, dydu); }
 int CompiledModel::events(const Arguments& at, double* g) const { return EOMGEN_CALL(events, g); }
 int CompiledModel::energy_gradients(const Arguments& at, double* energies, double* dT, double* dU) const {
   return EOMGEN_CALL(energy_gradients, energies, dT, dU);
+}
+int CompiledModel::momentum(const Arguments& at, double* AG, double* hG, double* centre) const {
+  return EOMGEN_CALL(momentum, AG, hG, centre);
 }
 int CompiledModel::frames(const Arguments& at, double* pose, double* J, double* bias) const {
   return EOMGEN_CALL(frames, pose, J, bias);

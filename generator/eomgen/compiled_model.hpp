@@ -28,9 +28,10 @@ struct CompileOptions {
   std::string form = "auto";               // see EmitOptions::form
   std::string tier = "auto";               // see RunOptions::tier
   std::optional<std::string> solver = {};  // of simulations, one of solvers(); replaces the scene's
-  /// Functions beside rhs and outputs: "jac", "jac_p", "jac_u", "jvp", "vjp", "adjoint", "hvp", "inverse", "coriolis",
-  /// "gravity", "mass", "momenta", "constraints", "reactions", "events", "energy_gradients", "frames", "taylor". None
-  /// given: jac, mass, and for a model with constraints also constraints and reactions.
+  /// Functions beside rhs and outputs: "jac", "jac_p", "jac_u", "jvp", "vjp", "adjoint", "hvp", "inverse", "regressor",
+  /// "coriolis", "gravity", "mass", "momenta", "momentum", "constraints", "reactions", "events", "energy_gradients",
+  /// "frames", "taylor", and "outputs_jac", "reactions_jac", each also with "_p" and "_u". None given: jac, mass, and
+  /// for a model with constraints also constraints and reactions.
   std::optional<std::vector<std::string>> functions = {};
   std::vector<std::string> outputs = {};  // in addition to coordinates; replace the scene's; "all": every output
   bool charts = true;                     // allow simulations to change charts near singularities
@@ -65,10 +66,12 @@ class CompiledModel {
   const std::vector<std::string>& reactions() const;    // labels of all constraints, in the order of reactions()
   const std::vector<std::string>& events() const;       // names of the model's events, the first of events()
   const std::vector<std::string>& frames() const;       // bodies, particles, points, in the order of frames()
-  std::size_t coordinate_count() const;                 // n
-  const std::string& certificate() const;               // summary of the verification
-  const std::string& tier() const;                      // "jit" or "compiled"
-  bool has(const std::string& function) const;          // "rhs", "jac", ..
+  const std::vector<std::string>& inertial_parameters() const;  // K, in the order of regressor()
+  bool has_masses() const;                                      // whether there are bodies or particles
+  std::size_t coordinate_count() const;                         // n
+  const std::string& certificate() const;                       // summary of the verification
+  const std::string& tier() const;                              // "jit" or "compiled"
+  bool has(const std::string& function) const;                  // "rhs", "jac", ..
 
   /// The numbers of the scene: the values of null arguments of the functions below.
   const SceneValues& values() const;
@@ -85,7 +88,7 @@ class CompiledModel {
     const double* parameters = nullptr;  // P; null: those of the scene
     const double* inputs = nullptr;      // U; null: those of the scene at t
     const int* mode = nullptr;           // mode_size() (docs/abi.md, "Modes"); null: all entries are 0
-    const double* v = nullptr;           // of jvp, vjp, adjoint: N; of hvp: 2 N; of inverse: n
+    const double* v = nullptr;           // of jvp, vjp, adjoint: N; of hvp: 2 N; of inverse, regressor: n
   };
   // Each function returns a code of docs/abi.md: 0 if the results are valid, 2 at a singular state. A function that was
   // not compiled returns not_compiled. Results must not overlap with arguments.
@@ -99,18 +102,29 @@ class CompiledModel {
   int adjoint(const Arguments& at, double* vJ, double* vP, double* vU) const;  // v^T df/dx, df/dp, df/du: N; P; U
   int hvp(const Arguments& at, double* Hd) const;                              // d(c^T df/dx)/dx d, v = (c, d): N
   int inverse(const Arguments& at, double* tau) const;                         // M v + h with the inputs: n
+  int regressor(const Arguments& at, double* Y, double* inertial) const;       // n x K by columns; K
   int coriolis(const Arguments& at, double* C) const;                // by Christoffel symbols: n x n by columns
   int gravity(const Arguments& at, double* g) const;                 // dU/dq: n
   int mass(const Arguments& at, double* M, double* h) const;         // M qddot + h = A^T lambda: n x n by columns; n
   int momenta(const Arguments& at, double* p, double* rates) const;  // dL/d(qdot): n; rates without constraint forces
   int constraints(const Arguments& at, double* psi, double* A, double* b) const;  // A qdot + b = 0: m; m x n; m
   int reactions(const Arguments& at, double* lambda) const;  // multipliers of all constraints, eliminated ones too
-  int outputs(const Arguments& at, double* y) const;         // as many as outputs()
-  int events(const Arguments& at, double* g) const;          // E, then kinks, then five of each contact
-  std::size_t event_count() const;                           // length of g
-  std::size_t mode_size() const;                             // one entry per contact, then per kink
+  // Derivatives of the R multipliers by states and time (or null), by parameters, by inputs: by columns.
+  int reactions_jac(const Arguments& at, double* dldx, double* dldt) const;  // R x N; R
+  int reactions_jac_p(const Arguments& at, double* dldp) const;              // R x P
+  int reactions_jac_u(const Arguments& at, double* dldu) const;              // R x U
+  int outputs(const Arguments& at, double* y) const;                         // as many as outputs(): Y
+  int outputs_jac(const Arguments& at, double* dydx, double* dydt) const;    // Y x N by columns; Y, or null
+  int outputs_jac_p(const Arguments& at, double* dydp) const;                // Y x P by columns
+  int outputs_jac_u(const Arguments& at, double* dydu) const;                // Y x U by columns
+  int events(const Arguments& at, double* g) const;                          // E, then kinks, then five of each contact
+  std::size_t event_count() const;                                           // length of g
+  std::size_t mode_size() const;                                             // one entry per contact, then per kink
   /// T and U; dT/dq, then dT/d(qdot): 2 n; dU/dq: n.
   int energy_gradients(const Arguments& at, double* energies, double* dT, double* dU) const;
+  /// Angular momentum about the centre of mass, then linear momentum: AG qdot + the part of prescribed motions (6), AG:
+  /// 6 x n by columns; the centre of mass (3). A model without bodies and particles has none.
+  int momentum(const Arguments& at, double* AG, double* hG, double* centre) const;
   /// Per frame: its position and axes e1, e2, e3 (12); the Jacobian of its linear and angular velocity (6 x n by
   /// columns); its linear and angular acceleration at qddot = 0 (6).
   int frames(const Arguments& at, double* pose, double* J, double* bias) const;

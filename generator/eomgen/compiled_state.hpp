@@ -26,7 +26,7 @@ struct CompiledModel::State {
   PreparedRun run;
   std::shared_ptr<pipeline::BoundRun> bound;
   std::vector<Quantity> states, parameters, inputs, outputs;
-  std::vector<std::string> constraints, reactions, events, frames;
+  std::vector<std::string> constraints, reactions, events, frames, inertial_parameters;
   SceneValues values;
   std::string certificate, tier;
   std::vector<double> constant_inputs;  // empty if some input varies

@@ -36,6 +36,16 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+/// The entries of `with`. Derivatives of outputs without names of outputs are those of the default scene's.
+std::vector<std::string> with_outputs(const EmissionRequest& options) {
+  std::vector<std::string> with = options.with;
+  const bool are_named = has(with, "outputs") || has(with, "energy") || !options.outputs.empty();
+  if (!are_named &&
+      std::any_of(with.begin(), with.end(), [](const std::string& name) { return name.starts_with("outputs_jac"); }))
+    with.emplace_back("outputs");
+  return with;
+}
+
 program::Request request_of(const EmissionRequest& options, DerivedModel& derived, const run::Scene& scene) {
   program::Request request;
   std::vector<std::string> of_run;  // after those that are requested
@@ -43,7 +53,7 @@ program::Request request_of(const EmissionRequest& options, DerivedModel& derive
     request = functions_for_run(derived, scene, run::choose_solver(scene.solver, scene).first);
     of_run.swap(request.outputs);
   }
-  for (const std::string& name : options.with) {
+  for (const std::string& name : with_outputs(options)) {
     if (name == "energy") {
       request.outputs.push_back("energy");
     } else if (name == "outputs") {

@@ -10,6 +10,7 @@
 
 #include "derive/formulations.hpp"
 #include "derive/frames.hpp"
+#include "derive/inertias.hpp"
 #include "derive/trees/body_residual.hpp"
 #include "emit/self_test.hpp"
 #include "error.hpp"
@@ -221,6 +222,7 @@ program::Program make_program(DerivedModel& derived, const program::Request& req
   complete.inputs = derived.model.inputs.size();
   complete.residual = [&derived] { return derive::body_residual(derived.mechanics); };
   if (!complete.frames) complete.frames = [&derived] { return derive::frames(derived.mechanics); };
+  if (!complete.inertias) complete.inertias = [&derived] { return derive::inertias(derived.mechanics); };
   program::Program program = program::build_program(derived.candidates, complete);
   derived.seconds.optimise += watch.lap();
   return program;
@@ -374,6 +376,7 @@ emit::EmissionContext emission_context(DerivedModel& derived, const program::Pro
   }
   ResetPlaces resets = reset_places(derived, scene);
   context.frames = derive::frame_names(model);
+  context.inertial = derive::inertial_parameter_names(model);
   for (std::size_t i = 0; i < model.events.size(); ++i) {
     const model::Event& event = model.events[i];
     context.events.push_back(

@@ -8,12 +8,19 @@
 namespace eomgen::pipeline {
 namespace {
 
-/// Every function that `emit` offers, except Taylor series if the program is too large for them.
+/// Every function that `emit` offers, except Taylor series and Jacobian matrices of all outputs if they are too large.
 program::Program with_every_function(DerivedModel& derived) {
   program::Request request;
   request.with = abi::optional_functions();
   std::erase(request.with, "outputs");  // outputs are requested by name
-  for (const system::Output& output : derived.candidates.front().outputs) request.outputs.push_back(output.name);
+  const system::EquationSystem& system = derived.candidates.front();
+  for (const system::Output& output : system.outputs) request.outputs.push_back(output.name);
+  // `emit` writes few outputs, and all of their derivatives.
+  constexpr std::size_t most_derivatives = 4000;
+  for (const auto& [function, columns] : {std::pair{"outputs_jac", system.layout().size()},
+                                          {"outputs_jac_p", derived.model.parameters.size()},
+                                          {"outputs_jac_u", derived.model.inputs.size()}})
+    if (columns * request.outputs.size() > most_derivatives) std::erase(request.with, function);
   try {
     return make_program(derived, request);
   } catch (const Error&) {

@@ -194,13 +194,13 @@ std::vector<Ref> AbiFunctions::differentiated(symbolic::Derivation& d, std::opti
   } else if (std::optional<std::vector<Ref>> solved = along ? solved_column(d, *along) : std::nullopt) {
     result = *std::move(solved);
   } else {
-    result = differentiated_equations(d, along);
+    result = differentiated_equations(d, along).first;
   }
   for (const system::FirstOrderState& state : system_.states) result.push_back(d(state.rate));
   return result;
 }
 
-std::vector<Ref> AbiFunctions::differentiated_equations(symbolic::Derivation& d, std::optional<Symbol> along) {
+Unknowns AbiFunctions::differentiated_equations(symbolic::Derivation& d, std::optional<Symbol> along) {
   Dag& dag = *system_.dag;
   std::vector<Ref> r, c;
   for (std::size_t i = 0; i < n_; ++i) {
@@ -215,7 +215,7 @@ std::vector<Ref> AbiFunctions::differentiated_equations(symbolic::Derivation& d,
     for (std::size_t j = 0; j < n_; ++j) sum = dag.add(sum, dag.mul(d(system_.A[k * n_ + j]), qddot_[j]));
     c.push_back(dag.neg(sum));
   }
-  return solve()(std::move(r), c).first;
+  return solve()(std::move(r), c);
 }
 
 // -d(M qddot - f)_i/ds at fixed qddot.
@@ -342,11 +342,16 @@ FunctionExpressions AbiFunctions::constraints() {
   return function;
 }
 
+bool AbiFunctions::contains_solution(Ref expression) const {
+  const std::vector<Symbol> symbols = system_.dag->symbols({expression});
+  return std::any_of(symbols.begin(), symbols.end(), [](const Symbol& symbol) {
+    return symbol.kind == SymbolKind::multiplier || symbol.kind == SymbolKind::friction ||
+           (symbol.kind == SymbolKind::coordinate && symbol.order == 2);
+  });
+}
+
 Ref AbiFunctions::substitute_solution(Ref expression, bool& solved) {
-  for (const Symbol& symbol : system_.dag->symbols({expression})) {
-    solved = solved || symbol.kind == SymbolKind::multiplier || symbol.kind == SymbolKind::friction ||
-             (symbol.kind == SymbolKind::coordinate && symbol.order == 2);
-  }
+  solved = solved || contains_solution(expression);
   return solved ? (*solution_)(expression) : expression;
 }
 
@@ -363,16 +368,8 @@ FunctionExpressions AbiFunctions::reactions() {
 FunctionExpressions AbiFunctions::outputs(const std::vector<std::string>& names) {
   FunctionExpressions function = empty_function("outputs");
   bool solved = false;
-  for (const std::string& name : names) {
-    const auto found = std::find_if(system_.outputs.begin(), system_.outputs.end(),
-                                    [&name](const system::Output& output) { return output.name == name; });
-    if (found == system_.outputs.end()) {
-      std::string known;
-      for (const auto& output : system_.outputs) known += (known.empty() ? "" : ", ") + output.name;
-      throw Error("program", {}, fmt::format("there is no output `{}`", name), "outputs of this model: " + known);
-    }
-    function.results[0].entries.push_back(substitute_solution(found->value, solved));
-  }
+  for (const Ref value : output_values(names))
+    function.results[0].entries.push_back(substitute_solution(value, solved));
   if (solved) add_solution(function);
   return function;
 }

@@ -45,6 +45,15 @@ enum class Differentiate : std::uint8_t {
   solution    // the solved accelerations
 };
 
+/// How the Jacobian matrix of values is made.
+enum class Sweep : std::uint8_t {
+  columns,  // forward: one right-hand side of the solve for each symbol
+  rows      // reverse: one right-hand side of the solve for each value
+};
+
+/// Whether a function is a Jacobian matrix of `outputs` or `reactions`.
+bool is_value_jacobian(const std::string& function);
+
 /// Solves the equations of motion and builds the functions of the ABI from the solution.
 class AbiFunctions {
  public:
@@ -62,6 +71,12 @@ class AbiFunctions {
   FunctionExpressions vjp(Differentiate by);
   FunctionExpressions adjoint(Differentiate by, std::size_t parameters, std::size_t inputs);
   FunctionExpressions hvp(Differentiate by);
+  /// A function of which is_value_jacobian is true. `count`: of the parameters or inputs of its columns; of `columns`
+  /// if it is a derivative by the state. `outputs`: those of `outputs`.
+  FunctionExpressions value_jacobian(const std::string& name, const std::vector<std::string>& outputs,
+                                     std::size_t count, Sweep sweep);
+  /// Whether the system has all these outputs.
+  bool has_outputs(const std::vector<std::string>& names) const;
   /// M v - f without friction of contacts.
   FunctionExpressions inverse();
   FunctionExpressions coriolis();
@@ -93,8 +108,17 @@ class AbiFunctions {
   std::vector<Ref> derivative_column(symbolic::Symbol along);
   /// d(qddot, rates of states) for the seeds of `d`; `along`: the symbol, if there is one only.
   std::vector<Ref> differentiated(symbolic::Derivation& d, std::optional<symbolic::Symbol> along);
-  /// The same by the equations at fixed qddot and lambda.
-  std::vector<Ref> differentiated_equations(symbolic::Derivation& d, std::optional<symbolic::Symbol> along);
+  /// d(qddot, lambda) by the equations at fixed qddot and lambda.
+  Unknowns differentiated_equations(symbolic::Derivation& d, std::optional<symbolic::Symbol> along);
+  /// f + A^T lambda - M qddot, then gamma + A qddot, with qddot and lambda as symbols.
+  std::vector<Ref> equation_sums();
+  /// d(values)/d(symbols) by columns. The values may contain qddot and lambda as symbols.
+  std::vector<Ref> value_slopes_by_columns(const std::vector<Ref>& values,
+                                           const std::vector<symbolic::Symbol>& symbols);
+  std::vector<Ref> value_slopes_by_rows(const std::vector<Ref>& values, const std::vector<symbolic::Symbol>& symbols);
+  /// Values of outputs, in which qddot and lambda are symbols.
+  std::vector<Ref> output_values(const std::vector<std::string>& names) const;
+  bool contains_solution(Ref expression) const;
   bool differentiates_solution() const { return !system_.contacts.empty() || (system_.solution && m_ > 0); }
   std::vector<symbolic::Symbol> state_symbols() const;
   /// The gradient of v^T f by symbols, v = weights.

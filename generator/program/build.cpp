@@ -14,6 +14,7 @@
 #include "program/frames.hpp"
 #include "program/from_dag.hpp"
 #include "program/hoist.hpp"
+#include "program/inertias.hpp"
 #include "program/taylor.hpp"
 #include "system/contact_set.hpp"
 #include "system/expressions.hpp"
@@ -191,8 +192,23 @@ std::vector<std::unique_ptr<AbiFunctions>> with_residual(const std::vector<syste
   return result;
 }
 
+/// How derivatives are taken.
+struct Way {
+  Differentiate by = Differentiate::equations;
+  Sweep sweep = Sweep::columns;
+};
+
+/// Columns of a derivative by parameters or inputs.
+std::size_t column_count(const AbiFunctions& functions, const std::string& name, const Request& request) {
+  const bool by_parameters = name.ends_with("_p");
+  const std::size_t in_model = by_parameters ? request.parameters : request.inputs;
+  if (in_model > 0) return in_model;
+  return symbol_count(functions.system(),
+                      by_parameters ? symbolic::SymbolKind::parameter : symbolic::SymbolKind::input);
+}
+
 FunctionExpressions function_expressions(AbiFunctions& functions, const std::string& name, const Request& request,
-                                         Differentiate by = Differentiate::equations) {
+                                         const Way& way = {}) {
   static const std::map<std::string_view, FunctionExpressions (AbiFunctions::*)()> formulas{
       {"jac", &AbiFunctions::jac},
       {"inverse", &AbiFunctions::inverse},
@@ -210,16 +226,23 @@ FunctionExpressions function_expressions(AbiFunctions& functions, const std::str
   const auto count = [&](std::size_t in_model, symbolic::SymbolKind kind) {
     return in_model > 0 ? in_model : symbol_count(functions.system(), kind);
   };
-  if (name == "frames")
-    return frame_function(*functions.system().dag, request.frames ? request.frames() : std::vector<system::Frame>{},
-                          functions.system().free, request.fix);
+  const auto frames = [&] { return request.frames ? request.frames() : std::vector<system::Frame>{}; };
+  symbolic::Dag& dag = *functions.system().dag;
+  if (name == "frames") return frame_function(dag, frames(), functions.system().free, request.fix);
+  if (name == "regressor" || name == "momentum") {
+    const InertiaFunctions of(dag, frames(), request.inertias ? request.inertias() : system::Inertias{},
+                              functions.system().free, request.fix);
+    return name == "regressor" ? of.regressor() : of.momentum();
+  }
+  if (is_value_jacobian(name))
+    return functions.value_jacobian(name, request.outputs, column_count(functions, name, request), way.sweep);
   if (name == "jac_p") return functions.jac_p(count(request.parameters, symbolic::SymbolKind::parameter));
   if (name == "jac_u") return functions.jac_u(count(request.inputs, symbolic::SymbolKind::input));
-  if (name == "jvp") return functions.jvp(by);
-  if (name == "vjp") return functions.vjp(by);
-  if (name == "hvp") return functions.hvp(by);
+  if (name == "jvp") return functions.jvp(way.by);
+  if (name == "vjp") return functions.vjp(way.by);
+  if (name == "hvp") return functions.hvp(way.by);
   if (name == "adjoint")
-    return functions.adjoint(by, count(request.parameters, symbolic::SymbolKind::parameter),
+    return functions.adjoint(way.by, count(request.parameters, symbolic::SymbolKind::parameter),
                              count(request.inputs, symbolic::SymbolKind::input));
   throw Error("program", {}, fmt::format("there is no function `{}`", name),
               fmt::format("available functions: {}", fmt::join(abi::optional_functions(), ", ")));
@@ -232,7 +255,37 @@ bool is_product(const std::string& name) {
 
 /// Functions that other formulations than that of the right-hand side may give cheaper.
 bool has_other_ways(const std::string& name) {
-  return name == "jac" || name == "jac_p" || name == "jac_u" || name == "inverse" || is_product(name);
+  return name == "jac" || name == "jac_p" || name == "jac_u" || name == "inverse" || is_product(name) ||
+         is_value_jacobian(name);
+}
+
+/// The ways to a derivative. A Jacobian matrix with far fewer rows than columns is made by rows, one with fewer columns
+/// by columns; between them both are compared.
+std::vector<Way> ways_to(const std::string& name, const AbiFunctions& functions, const Request& request) {
+  constexpr std::size_t cost_of_row = 4;  // columns, about
+  if (is_product(name)) return {{Differentiate::equations}, {Differentiate::solution}};
+  if (!is_value_jacobian(name)) return {{}};
+  const bool of_outputs = name.starts_with("outputs");
+  if (of_outputs && !functions.has_outputs(request.outputs)) return {};
+  const system::EquationSystem& system = functions.system();
+  const std::size_t rows = of_outputs ? request.outputs.size() : system.reactions.size(),
+                    columns = name.ends_with("_jac") ? 2 * system.free.size() + system.states.size() + 1
+                                                     : column_count(functions, name, request);
+  std::vector<Way> ways;
+  if (cost_of_row * rows > columns) ways.push_back({Differentiate::equations, Sweep::columns});
+  if (rows < columns) ways.push_back({Differentiate::equations, Sweep::rows});
+  return ways.empty() ? std::vector<Way>{{}} : ways;
+}
+
+/// The functions with `reactions` before their derivatives, which are compared with its differences.
+std::vector<std::string> with_values(const std::vector<std::string>& with) {
+  const auto of_reactions = std::find_if(with.begin(), with.end(), [](const std::string& name) {
+    return is_value_jacobian(name) && name.starts_with("reactions");
+  });
+  std::vector<std::string> result = with;
+  if (of_reactions != with.end() && std::find(with.begin(), with.end(), "reactions") == with.end())
+    result.insert(result.begin() + (of_reactions - with.begin()), "reactions");
+  return result;
 }
 
 /// The cheapest of several ways to the same derivatives, which need not be that of the right-hand side.
@@ -250,19 +303,19 @@ class Derivatives {
     std::vector<FunctionExpressions> wanted;
     std::vector<PolynomialGraph> raw;
     std::vector<std::size_t> costs;
-    const auto add = [&](AbiFunctions& functions, Differentiate by) {
-      wanted.push_back(function_expressions(functions, name, request_, by));
+    const auto add = [&](AbiFunctions& functions, const Way& way) {
+      wanted.push_back(function_expressions(functions, name, request_, way));
       raw.push_back(as_derived(functions, wanted.back()));
       costs.push_back(count_operations(tested(flatten(raw.back(), false))).cost());
     };
     for (AbiFunctions* functions : ways_) {
-      add(*functions, Differentiate::equations);
-      if (is_product(name)) add(*functions, Differentiate::solution);
+      for (const Way& way : ways_to(name, *functions, request_)) add(*functions, way);
     }
     const std::size_t least = *std::min_element(costs.begin(), costs.end());
-    // Products have twice as many ways, whose costs are in the order of those after optimisation: only the cheapest is
+    // These have twice as many ways, whose costs are in the order of those after optimisation: only the cheapest is
     // optimised.
-    const double largest = (is_product(name) ? 1 : max_cost_ratio) * static_cast<double>(least);
+    const bool has_many = is_product(name) || is_value_jacobian(name);
+    const double largest = (has_many ? 1 : max_cost_ratio) * static_cast<double>(least);
     std::optional<PolynomialGraph> best;
     std::size_t best_cost = 0, which = 0;
     for (std::size_t i = 0; i < wanted.size(); ++i) {
@@ -317,7 +370,7 @@ Program build_program(std::vector<system::EquationSystem>& systems, const Reques
     program.functions.push_back(finished(request.optimise ? optimised(graphs) : graphs[0], wanted));
   };
   Derivatives derivatives(systems, request, *chosen.functions);
-  for (const std::string& name : request.with) {
+  for (const std::string& name : with_values(request.with)) {
     if (name == "outputs" || name == "rhs") continue;  // outputs: by requested names; rhs: always built
     if (name == "taylor") {
       program.taylor = taylor_series(program.functions.front());

@@ -12,6 +12,7 @@
 #include "program/program.hpp"
 #include "system/equation_system.hpp"
 #include "system/frame.hpp"
+#include "system/inertia.hpp"
 
 namespace eomgen::program {
 
@@ -24,6 +25,8 @@ struct Request {
   std::function<std::optional<system::Residual>()> residual = {};
   /// Derives the motions of bodies, particles and points, for the function `frames`. Empty: it has no frames.
   std::function<std::vector<system::Frame>()> frames = {};
+  /// Derives the masses and inertias of bodies and particles. Empty: `regressor` and `momentum` have none.
+  std::function<system::Inertias()> inertias = {};
   bool optimise = true;  // false: code as derived (for tests and comparisons)
 };
 

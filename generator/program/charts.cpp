@@ -32,6 +32,27 @@ Function exchange(const symbolic::Dag& dag, const std::string& name, const Progr
 
 }  // namespace
 
+namespace {
+
+/// Adds rows of zeros to matrices with a row for each of the outputs `places`, which then have one for every output.
+void spread_rows(Function& function, const std::vector<std::uint32_t>& places, std::size_t outputs) {
+  if (places.size() == outputs || places.empty()) return;
+  const auto found = std::find(function.constants.begin(), function.constants.end(), symbolic::Rational(0));
+  const auto zero = static_cast<std::uint32_t>(found - function.constants.begin());
+  if (found == function.constants.end()) function.constants.emplace_back(0);
+  for (Result& result : function.results) {
+    if (result.is_test()) continue;
+    const std::size_t columns = result.entries.size() / places.size();
+    std::vector<Operand> entries(columns * outputs, Operand{Slot::constant, zero, false});
+    for (std::size_t j = 0; j < columns; ++j)
+      for (std::size_t i = 0; i < places.size(); ++i)
+        entries[places[i] + outputs * j] = result.entries[i + places.size() * j];
+    result.entries = std::move(entries);
+  }
+}
+
+}  // namespace
+
 std::vector<std::uint32_t> chart_independent_outputs(const std::vector<std::string>& outputs,
                                                      const std::vector<system::Output>& own,
                                                      const std::vector<system::Output>& second,
@@ -76,6 +97,7 @@ void add_chart_variant(Program& program, Program second, unsigned charts, const 
   second.in_charts = charts;
   for (Function& function : second.functions) {
     if (function.name == "outputs") function.result_indices = places;
+    if (function.name.starts_with("outputs_jac")) spread_rows(function, places, program.outputs.size());
   }
   program.chart_variants.push_back(std::move(second));
 }

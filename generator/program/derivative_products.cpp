@@ -48,6 +48,28 @@ FunctionExpressions AbiFunctions::jvp(Differentiate by) {
   return function;
 }
 
+std::vector<Ref> AbiFunctions::equation_sums() {
+  Dag& dag = *system_.dag;
+  std::vector<Ref> sums;
+  for (std::size_t i = 0; i < n_; ++i) {
+    Ref sum;
+    if (system_.residual) {
+      sum = dag.sub(system_.residual->applied[i], system_.residual->inertia[i]);
+    } else {
+      sum = system_.f[i];
+      for (std::size_t j = 0; j < n_; ++j) sum = dag.sub(sum, dag.mul(system_.M[i * n_ + j], qddot_symbol_[j]));
+    }
+    for (std::size_t k = 0; k < m_; ++k) sum = dag.add(sum, dag.mul(system_.A[k * n_ + i], lambda_symbol_[k]));
+    sums.push_back(sum);
+  }
+  for (std::size_t k = 0; k < m_; ++k) {
+    Ref sum = system_.gamma[k];
+    for (std::size_t j = 0; j < n_; ++j) sum = dag.add(sum, dag.mul(system_.A[k * n_ + j], qddot_symbol_[j]));
+    sums.push_back(sum);
+  }
+  return sums;
+}
+
 // With K (qddot, lambda) = (f, gamma), K = [M -A^T; A 0] and the weights w of qddot, (mu, nu) = K^-T (w, 0). The
 // gradient of w^T qddot is that of mu^T (f + A^T lambda - M qddot) + nu^T (gamma + A qddot) at fixed mu, nu, qddot,
 // lambda.
@@ -67,24 +89,10 @@ std::vector<Ref> AbiFunctions::gradient(Differentiate by, const std::vector<Ref>
     return symbolic::gradient(dag, roots, factors, of);
   }
   const auto [mu, nu] = solve()({of_qddot, of_states}, std::vector<Ref>(m_, dag.zero()));
-  for (std::size_t i = 0; i < n_; ++i) {
-    Ref sum;
-    if (system_.residual) {
-      sum = dag.sub(system_.residual->applied[i], system_.residual->inertia[i]);
-    } else {
-      sum = system_.f[i];
-      for (std::size_t j = 0; j < n_; ++j) sum = dag.sub(sum, dag.mul(system_.M[i * n_ + j], qddot_symbol_[j]));
-    }
-    for (std::size_t k = 0; k < m_; ++k) sum = dag.add(sum, dag.mul(system_.A[k * n_ + i], lambda_symbol_[k]));
-    roots.push_back(sum);
-    factors.push_back(mu[i]);
-  }
-  for (std::size_t k = 0; k < m_; ++k) {
-    Ref sum = system_.gamma[k];
-    for (std::size_t j = 0; j < n_; ++j) sum = dag.add(sum, dag.mul(system_.A[k * n_ + j], qddot_symbol_[j]));
-    roots.push_back(sum);
-    factors.push_back(nu[k]);
-  }
+  const std::vector<Ref> sums = equation_sums();
+  roots.insert(roots.end(), sums.begin(), sums.end());
+  factors.insert(factors.end(), mu.begin(), mu.end());
+  factors.insert(factors.end(), nu.begin(), nu.end());
   std::vector<Ref> result = symbolic::gradient(dag, roots, factors, of);
   for (Ref& r : result) r = (*solution_)(r);
   return result;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <string_view>
+#include <tuple>
 
 #include "symbolic/evaluate.hpp"
 #include "verify/applied_forces.hpp"
@@ -43,9 +44,9 @@ class DerivativeComparisons::Comparison {
         {"hvp", &Comparison::hvp},        {"inverse", &Comparison::inverse}, {"coriolis", &Comparison::coriolis},
         {"gravity", &Comparison::gravity}};
     const auto found = checks.find(function);
-    if (found == checks.end()) return false;
     values_ = &values;
     sizes_ = &sizes;
+    if (found == checks.end()) return value_jacobian(function);
     (this->*found->second)();
     return true;
   }
@@ -78,35 +79,37 @@ class DerivativeComparisons::Comparison {
     for (std::size_t j = 0; j < direction.size(); ++j) values[j] = values[j] + step * direction[j];
   }
 
-  /// The differences of the right-hand side along a direction.
-  const std::optional<CentralDifference>& slope(Numbers AbiArguments::*part, std::size_t first = 0) {
-    const auto key = std::pair{part == &AbiArguments::x ? 0 : part == &AbiArguments::p ? 1 : 2, first};
+  /// The differences of a function along a direction.
+  const std::optional<CentralDifference>& slope(Numbers AbiArguments::*part, std::size_t first = 0,
+                                                const std::string& of = "rhs") {
+    const auto key = std::tuple{of, part == &AbiArguments::x ? 0 : part == &AbiArguments::p ? 1 : 2, first};
     const auto found = slopes_.find(key);
     if (found != slopes_.end()) return found->second;
     const Numbers along = part == &AbiArguments::p ? direction_of_parameters() : direction((at_.*part).size(), first);
     return slopes_
         .emplace(key, central_difference(
-                          program_, "rhs", at_,
-                          [&](AbiArguments& at, const Real& step) { move(at.*part, along, step); }, step_digits()))
+                          program_, of, at_, [&](AbiArguments& at, const Real& step) { move(at.*part, along, step); },
+                          step_digits()))
         .first->second;
   }
 
-  /// The rounding error of differences of the right-hand side; empty where it has no value.
-  const Numbers& noise() {
-    if (noise_) return *noise_;
-    noise_.emplace();
-    const std::optional<AbiResults> rhs = program_.call("rhs", at_, oracle_.digits());
-    if (!rhs) return *noise_;
-    const AbiResults size = value_sizes(program_, "rhs", at_, *rhs, oracle_);
-    if (size.empty()) return *noise_;
-    for (const Real& one : size[0]) noise_->push_back(one * power_of_ten(-table_.digits()));
-    return *noise_;
+  /// The rounding error of differences of a function; empty where it has no value.
+  const Numbers& noise(const std::string& of = "rhs") {
+    const auto [found, is_new] = noise_.try_emplace(of);
+    Numbers& noise = found->second;
+    if (!is_new) return noise;
+    const std::optional<AbiResults> values = program_.call(of, at_, oracle_.digits());
+    if (!values) return noise;
+    const AbiResults size = value_sizes(program_, of, at_, *values, oracle_);
+    if (size.empty()) return noise;
+    for (const Real& one : size[0]) noise.push_back(one * power_of_ten(-table_.digits()));
+    return noise;
   }
 
   /// Compares the columns of array `r`, times the components of a direction, with the central difference along it.
   void along(const std::string& name, std::size_t r, const Numbers& direction,
-             const std::optional<CentralDifference>& slope) {
-    const Numbers& lost = noise();
+             const std::optional<CentralDifference>& slope, const std::string& of = "rhs") {
+    const Numbers& lost = noise(of);
     if (!slope || lost.empty()) return;
     const std::size_t rows = lost.size();
     double largest = 0;
@@ -118,7 +121,26 @@ class DerivativeComparisons::Comparison {
       }
       largest = std::max(largest, relative_difference(sum - slope->values[0][i], size));
     }
-    note(name, differences, largest);
+    note(name, of == "rhs" ? differences : ("differences of " + of).c_str(), largest);
+  }
+
+  /// The derivatives of `outputs` or `reactions`, which are in the program too.
+  bool value_jacobian(const std::string& function) {
+    const std::size_t end = function.find("_jac");
+    if (end == std::string::npos) return false;
+    const std::string of = function.substr(0, end);
+    if (function.ends_with("_p")) {
+      along(function, 0, direction_of_parameters(), slope(&AbiArguments::p, 0, of), of);
+    } else if (function.ends_with("_u")) {
+      along(function, 0, direction(at_.u.size()), slope(&AbiArguments::u, 0, of), of);
+    } else {
+      along(function, 0, direction(at_.x.size()), slope(&AbiArguments::x, 0, of), of);
+      along("d" + of + "/dt", 1, {Real(1)},
+            central_difference(
+                program_, of, at_, [](AbiArguments& at, const Real& h) { at.t = at.t + h; }, step_digits()),
+            of);
+    }
+    return true;
   }
 
   void jac() {
@@ -300,8 +322,8 @@ class DerivativeComparisons::Comparison {
   ComparisonTable& table_;
   std::size_t n_;
   const AbiResults *values_ = nullptr, *sizes_ = nullptr;  // of the function that is compared
-  std::map<std::pair<int, std::size_t>, std::optional<CentralDifference>> slopes_;
-  std::optional<Numbers> noise_;
+  std::map<std::tuple<std::string, int, std::size_t>, std::optional<CentralDifference>> slopes_;
+  std::map<std::string, Numbers> noise_;
 };
 
 AbiResults value_sizes(const ProgramForm& program, const std::string& function, const AbiArguments& at,

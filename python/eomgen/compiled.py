@@ -118,6 +118,11 @@ class CompiledModel(_core.CompiledModel):
         return self._frame_names()
 
     @property
+    def inertial_parameter_names(self) -> List[str]:
+        """Names of the inertial parameters of regressor(); empty unless "regressor" was compiled."""
+        return self._inertial_parameter_names()
+
+    @property
     def units(self) -> Dict[str, str]:
         """SI units of states, parameters, inputs and outputs by name; "" if unknown or a pure number."""
         return {name: unit for group in (self._outputs(), self._states(), self._parameters(), self._inputs()) for name, unit in group}

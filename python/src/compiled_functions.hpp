@@ -28,6 +28,9 @@ enum class Size {
   twist,           // linear and angular
   twists,          // of each frame
   frame_tangents,  // of each frame by each coordinate
+  inertial,        // inertial parameters
+  momentum,        // of a model with masses, else 0
+  position,        // of a model with masses, else 0
 };
 
 inline std::size_t value_of(Size size, const CompiledModel& model) {
@@ -47,6 +50,9 @@ inline std::size_t value_of(Size size, const CompiledModel& model) {
     case Size::twist: return 6;
     case Size::twists: return 6 * model.frames().size();
     case Size::frame_tangents: return model.coordinate_count() * model.frames().size();
+    case Size::inertial: return model.inertial_parameters().size();
+    case Size::momentum: return model.has_masses() ? 6 : 0;
+    case Size::position: return model.has_masses() ? 3 : 0;
     case Size::none: break;
   }
   return 1;
@@ -68,6 +74,18 @@ struct Function {
   int (*evaluate)(const CompiledModel& model, const Arguments& at, double* const* results);
   Size vector = Size::none;  // length of the argument v, if the function takes it
 };
+
+/// The derivatives by time, which come with those by the state.
+inline int outputs_jac_t(const CompiledModel& model, const Arguments& at, double* const* results) {
+  thread_local std::vector<double> dydx;
+  dydx.resize(model.outputs().size() * model.states().size());
+  return model.outputs_jac(at, dydx.data(), results[0]);
+}
+inline int reactions_jac_t(const CompiledModel& model, const Arguments& at, double* const* results) {
+  thread_local std::vector<double> dldx;
+  dldx.resize(model.reactions().size() * model.states().size());
+  return model.reactions_jac(at, dldx.data(), results[0]);
+}
 
 inline int jac_t(const CompiledModel& model, const Arguments& at, double* const* results) {
   thread_local std::vector<double> dfdx;
@@ -157,6 +175,17 @@ inline constexpr std::array functions{
              {{{Size::coordinates}}},
              [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.inverse(at, r[0]); },
              Size::coordinates},
+    Function{
+        "regressor",
+        "regressor",
+        "regressor" EOMGEN_VECTOR_ARGUMENTS
+        "(Y, inertial): Y inertial are the forces of inertia and uniform gravity at the accelerations v, (n, I), and\n"
+        "the inertial parameters in the order of inertial_parameter_names, (I,); or with K in front.\n\n"
+        "v: (n,), or (K, n). Other arguments as of rhs.",
+        2,
+        {{{Size::coordinates, Size::inertial}, {Size::inertial}}},
+        [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.regressor(at, r[0], r[1]); },
+        Size::coordinates},
     Function{"coriolis",
              "coriolis",
              "coriolis" EOMGEN_ARGUMENTS
@@ -205,6 +234,35 @@ inline constexpr std::array functions{
         1,
         {{{Size::reactions}}},
         [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.reactions(at, r[0]); }},
+    Function{"reactions_jac",
+             "reactions_jac",
+             "reactions_jac" EOMGEN_ARGUMENTS
+             "d(reactions)/dx at fixed inputs: (R, N), or (K, R, N). Arguments as of rhs.",
+             1,
+             {{{Size::reactions, Size::states}}},
+             [](const CompiledModel& f, const Arguments& at, double* const* r) {
+               return f.reactions_jac(at, r[0], nullptr);
+             }},
+    Function{"reactions_jac_t",
+             "reactions_jac",
+             "reactions_jac_t" EOMGEN_ARGUMENTS
+             "d(reactions)/dt at fixed x and inputs: (R,), or (K, R). Arguments as of rhs.",
+             1,
+             {{{Size::reactions}}},
+             reactions_jac_t},
+    Function{"reactions_jac_p",
+             "reactions_jac_p",
+             "reactions_jac_p" EOMGEN_ARGUMENTS
+             "d(reactions)/d(parameters): (R, P), or (K, R, P). Arguments as of rhs.",
+             1,
+             {{{Size::reactions, Size::parameters}}},
+             [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.reactions_jac_p(at, r[0]); }},
+    Function{"reactions_jac_u",
+             "reactions_jac_u",
+             "reactions_jac_u" EOMGEN_ARGUMENTS "d(reactions)/d(inputs): (R, U), or (K, R, U). Arguments as of rhs.",
+             1,
+             {{{Size::reactions, Size::inputs}}},
+             [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.reactions_jac_u(at, r[0]); }},
     Function{"outputs",
              "outputs",
              "outputs" EOMGEN_ARGUMENTS
@@ -213,6 +271,32 @@ inline constexpr std::array functions{
              1,
              {{{Size::outputs}}},
              [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.outputs(at, r[0]); }},
+    Function{
+        "outputs_jac",
+        "outputs_jac",
+        "outputs_jac" EOMGEN_ARGUMENTS "d(outputs)/dx at fixed inputs: (Y, N), or (K, Y, N). Arguments as of rhs.",
+        1,
+        {{{Size::outputs, Size::states}}},
+        [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.outputs_jac(at, r[0], nullptr); }},
+    Function{"outputs_jac_t",
+             "outputs_jac",
+             "outputs_jac_t" EOMGEN_ARGUMENTS
+             "d(outputs)/dt at fixed x and inputs: (Y,), or (K, Y). Arguments as of rhs.",
+             1,
+             {{{Size::outputs}}},
+             outputs_jac_t},
+    Function{"outputs_jac_p",
+             "outputs_jac_p",
+             "outputs_jac_p" EOMGEN_ARGUMENTS "d(outputs)/d(parameters): (Y, P), or (K, Y, P). Arguments as of rhs.",
+             1,
+             {{{Size::outputs, Size::parameters}}},
+             [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.outputs_jac_p(at, r[0]); }},
+    Function{"outputs_jac_u",
+             "outputs_jac_u",
+             "outputs_jac_u" EOMGEN_ARGUMENTS "d(outputs)/d(inputs): (Y, U), or (K, Y, U). Arguments as of rhs.",
+             1,
+             {{{Size::outputs, Size::inputs}}},
+             [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.outputs_jac_u(at, r[0]); }},
     Function{"events",
              "events",
              "events" EOMGEN_ARGUMENTS
@@ -231,6 +315,15 @@ inline constexpr std::array functions{
              [](const CompiledModel& f, const Arguments& at, double* const* r) {
                return f.energy_gradients(at, r[0], r[1], r[2]);
              }},
+    Function{
+        "momentum",
+        "momentum",
+        "momentum" EOMGEN_ARGUMENTS
+        "(AG, hG, centre): angular momentum about the centre of mass, then linear momentum, hG = AG qdot + the part\n"
+        "of prescribed motions, (6, n) and (6,); the centre of mass, (3,); or with K in front. Arguments as of rhs.",
+        3,
+        {{{Size::momentum, Size::coordinates}, {Size::momentum}, {Size::position}}},
+        [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.momentum(at, r[0], r[1], r[2]); }},
     Function{
         "_frames",
         "frames",

@@ -269,6 +269,7 @@ void add_compiled_model(py::module_& module) {
       .def("_reactions", [](const CompiledModel& f) { return f.reactions(); })
       .def("_events", [](const CompiledModel& f) { return f.events(); })
       .def("_frame_names", [](const CompiledModel& f) { return f.frames(); })
+      .def("_inertial_parameter_names", [](const CompiledModel& f) { return f.inertial_parameters(); })
       .def("_event_count", &CompiledModel::event_count)
       .def("_coordinate_count", &CompiledModel::coordinate_count)
       .def("_certificate", &CompiledModel::certificate)

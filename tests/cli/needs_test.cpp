@@ -84,6 +84,8 @@ TEST_CASE("needs: a requested function adds its symbol and does not change the r
                                         {{"--with", "adjoint"}, "adjoint"},
                                         {{"--with", "hvp"}, "hvp"},
                                         {{"--with", "inverse"}, "inverse"},
+                                        {{"--with", "regressor"}, "regressor"},
+                                        {{"--with", "momentum"}, "momentum"},
                                         {{"--with", "coriolis"}, "coriolis"},
                                         {{"--with", "gravity"}, "gravity"},
                                         {{"--with", "mass"}, "mass"},
@@ -97,6 +99,18 @@ TEST_CASE("needs: a requested function adds its symbol and does not change the r
     CHECK(more.functions == with(bare.functions, {function}));
     CHECK(more.function("rhs") == bare.function("rhs"));
     CHECK(more.report["operations"] == bare.report["operations"]);
+  }
+}
+
+TEST_CASE("needs: derivatives of outputs and reactions come with their values") {
+  const Emitted bare = emitted("P7_moving_sphere");
+  const auto functions = [](const Words& words) { return emitted("P7_moving_sphere", words).functions; };
+  for (const std::string suffix : {"", "_p", "_u"}) {
+    CAPTURE(suffix);
+    CHECK(functions({"--with", "reactions_jac" + suffix}) ==
+          with(bare.functions, {"reactions", "reactions_jac" + suffix}));
+    CHECK(functions({"--with", "outputs_jac" + suffix, "--output", "energy"}) ==
+          with(bare.functions, {"outputs", "outputs_jac" + suffix}));
   }
 }
 

@@ -143,7 +143,7 @@ const std::vector<Words>& derive_calls() {
       {"verify", "--no-compile", "--points", "3", "--json"},
       {"emit", "-o", "OUT", "--with",
        "jac,jac_p,jac_u,jvp,vjp,adjoint,hvp,inverse,coriolis,gravity,mass,energy_gradients,frames,constraints,"
-       "reactions,outputs,events,energy",
+       "reactions,outputs,events,energy,regressor,momentum,reactions_jac,reactions_jac_p,outputs_jac,outputs_jac_u",
        "--json"},
       {"emit", "-o", "OUT", "--target", "python", "--approach", "I", "--json"},
       {"emit", "-o", "OUT", "--target", "latex", "--json"},

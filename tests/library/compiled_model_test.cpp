@@ -38,11 +38,28 @@ std::vector<std::string> names(const std::vector<Quantity>& list) {
 TEST_CASE("library: compiled functions of a driven pendulum have their values, in both tiers") {
   const Model model = Model::from(driven_pendulum(), "driven");
   for (const char* tier : {"compiled", "auto"}) {
-    const CompiledModel f =
-        model.compile({.tier = tier,
-                       .functions = std::vector<std::string>{"jac", "jac_p", "jac_u", "mass", "momenta", "events",
-                                                             "energy_gradients", "frames", "taylor", "jvp", "vjp",
-                                                             "adjoint", "hvp", "inverse", "coriolis", "gravity"}});
+    const CompiledModel f = model.compile({.tier = tier, .functions = std::vector<std::string>{"jac",
+                                                                                               "jac_p",
+                                                                                               "jac_u",
+                                                                                               "mass",
+                                                                                               "momenta",
+                                                                                               "events",
+                                                                                               "energy_gradients",
+                                                                                               "frames",
+                                                                                               "taylor",
+                                                                                               "jvp",
+                                                                                               "vjp",
+                                                                                               "adjoint",
+                                                                                               "hvp",
+                                                                                               "inverse",
+                                                                                               "coriolis",
+                                                                                               "gravity",
+                                                                                               "outputs_jac",
+                                                                                               "outputs_jac_p",
+                                                                                               "outputs_jac_u",
+                                                                                               "reactions_jac",
+                                                                                               "regressor",
+                                                                                               "momentum"}});
     CHECK(names(f.states()) == std::vector<std::string>{"q", "q_dot"});
     CHECK(names(f.parameters()) == std::vector<std::string>{"k", "k2"});
     CHECK(names(f.inputs()) == std::vector<std::string>{"u"});
@@ -111,8 +128,24 @@ TEST_CASE("library: compiled functions of a driven pendulum have their values, i
     CHECK(dT[0] == 0);
     CHECK(dT[1] == x[1]);
     CHECK(dU[0] == doctest::Approx(4 * std::sin(q)).epsilon(1e-15));
+    const auto row = static_cast<std::size_t>(energy - f.outputs().begin());
+    std::vector<double> yx(2 * y.size()), yp(2 * y.size()), yu(y.size()), yt(y.size());
+    REQUIRE(f.outputs_jac(at, yx.data(), yt.data()) == 0);
+    REQUIRE(f.outputs_jac(at, yx.data(), nullptr) == 0);
+    CHECK(yx[row] == doctest::Approx(4 * std::sin(q)).epsilon(1e-15));
+    CHECK(yx[y.size() + row] == x[1]);
+    CHECK(yt[row] == 0);
+    REQUIRE(f.outputs_jac_p(at, yp.data()) == 0);
+    CHECK(yp[row] == doctest::Approx(-std::cos(q)).epsilon(1e-15));
+    REQUIRE(f.outputs_jac_u(at, yu.data()) == 0);
+    CHECK(yu[row] == 0);
     CHECK(f.frames().empty());  // its energies have no positions
     CHECK(f.frames(at, nullptr, nullptr, nullptr) == 0);
+    CHECK(f.inertial_parameters().empty());
+    CHECK_FALSE(f.has_masses());
+    CHECK(f.regressor(at, nullptr, nullptr) == 0);
+    CHECK(f.momentum(at, nullptr, nullptr, nullptr) == 0);
+    CHECK(f.reactions_jac(at, nullptr, nullptr) == 0);
     REQUIRE(f.taylor(at, 2, c.data()) == 0);
     CHECK(c[4] == doctest::Approx(dx[1] / 2).epsilon(1e-15));
 

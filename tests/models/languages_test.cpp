@@ -209,11 +209,13 @@ TEST_CASE(
        {"P2_planar_pendulum", "P4_moving_cone", "P14_kepler_spherical", "S5_double_pendulum_cartesian", "S6_chain_6",
         "R1_free_body_euler_parameters", "R6_rough_disk", "R10_lagrange_top", "R18_rodrigues", "bilinear_oscillator",
         "cart_pendulum", "knife_edge", "n_four_bar_2", "stick_slip_belt"})
-    models.push_back(
-        compared_model(name,
-                       {"jac", "jac_p", "jac_u", "jvp", "vjp", "adjoint", "hvp", "inverse", "coriolis", "gravity",
-                        "mass", "constraints", "reactions", "events", "frames", "energy_gradients"},
-                       {"energy", "kinetic"}));
+    models.push_back(compared_model(name, {"jac",         "jac_p",         "jac_u",         "jvp",
+                                           "vjp",         "adjoint",       "hvp",           "inverse",
+                                           "coriolis",    "gravity",       "mass",          "constraints",
+                                           "reactions",   "events",        "frames",        "energy_gradients",
+                                           "regressor",   "momentum",      "reactions_jac", "reactions_jac_p",
+                                           "outputs_jac", "outputs_jac_p", "outputs_jac_u"},
+                                    {"energy", "kinetic"}));
   for (ComparedModel& model : models) {
     call_c(model);
     CHECK(model.calls.size() >= 8);

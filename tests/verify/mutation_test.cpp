@@ -185,9 +185,32 @@ Subject subject(const std::string& model) {
       std::make_shared<const model::Model>(model::read_model(std::string(EOMGEN_TEST_MODELS) + "/" + model + ".toml")),
       pipeline::ApproachChoice::automatic);
   program::Request request;
-  request.with = {"jac",      "jac_p",   "jac_u", "jvp",     "vjp",         "adjoint",   "hvp",    "inverse",
-                  "coriolis", "gravity", "mass",  "momenta", "constraints", "reactions", "events", "energy_gradients",
-                  "frames",   "taylor"};
+  request.with = {"jac",
+                  "jac_p",
+                  "jac_u",
+                  "jvp",
+                  "vjp",
+                  "adjoint",
+                  "hvp",
+                  "inverse",
+                  "coriolis",
+                  "gravity",
+                  "mass",
+                  "momenta",
+                  "constraints",
+                  "reactions",
+                  "events",
+                  "energy_gradients",
+                  "frames",
+                  "regressor",
+                  "momentum",
+                  "reactions_jac",
+                  "reactions_jac_p",
+                  "reactions_jac_u",
+                  "outputs_jac",
+                  "outputs_jac_p",
+                  "outputs_jac_u",
+                  "taylor"};
   request.outputs = {"energy", "kinetic", "power"};
   for (const system::Output& output : s.derived->candidates.front().outputs) {
     if (output.name.find("position") != std::string::npos || output.name.find("velocity") != std::string::npos)

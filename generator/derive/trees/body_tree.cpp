@@ -5,12 +5,15 @@
 #include <map>
 #include <tuple>
 
-#include "derive/trees/place_decomposition.hpp"
 #include "derive/trees/tree_forces.hpp"
+#include "mechanics/place_decomposition.hpp"
 #include "mechanics/vanishes.hpp"
 
 namespace eomgen::derive {
 namespace {
+
+using mechanics::decompose_place;
+using mechanics::PlaceDecomposition;
 
 using symbolic::Symbol;
 using symbolic::SymbolKind;

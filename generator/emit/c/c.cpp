@@ -105,6 +105,7 @@ std::string sizes(const std::string& name, const program::Program& program, cons
                                                               {"prepared_size", program.prepared_count()}};
   if (program.event_count() > 0) entries.emplace_back("event_count", program.event_count());
   if (program.result_size("frames") > 0) entries.emplace_back("frame_count", context.frames.size());
+  if (program.result_size("regressor") > 0) entries.emplace_back("inertial_count", context.inertial.size());
   if (program.taylor) entries.emplace_back("taylor_order", program::taylor_order(*program.taylor));
   std::vector<std::string> lines;
   for (const auto& [what, count] : entries) lines.push_back(fmt::format("  {}_{} = {}", name, what, count));

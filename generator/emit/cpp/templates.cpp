@@ -67,6 +67,7 @@ std::string index_names(const ModelNames& names, const program::Program& program
   add("Reaction", "reaction_count", names.reactions);
   if (!names.events.empty()) add("Event", "event_count", names.events);
   if (!names.frames.empty()) add("Frame", "frame_count", names.frames);
+  if (!names.inertial.empty()) add("Inertial", "inertial_count", names.inertial);
   result += fmt::format("inline constexpr std::size_t mode_size = {};\n", program.mode_layout().size());
   result += fmt::format("inline constexpr std::size_t prepared_size = {};\n", program.prepared_count());
   if (program.taylor)

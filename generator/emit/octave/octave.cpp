@@ -188,6 +188,10 @@ std::size_t octave_rows(const std::string& function, std::size_t result, const p
   if (function == "jac" && result == 0) return program.state_count();
   if (function == "jac_p" || function == "jac_u") return program.state_count();
   if (function == "coriolis") return program.free.size();
+  if (function == "regressor" && result == 0) return program.free.size();
+  if (function == "momentum" && result == 0) return 6;
+  if (function.starts_with("outputs_jac") && result == 0) return program.outputs.size();
+  if (function.starts_with("reactions_jac") && result == 0) return program.reactions.size();
   if (function == "mass" && result == 0) return program.free.size();
   if (function == "constraints" && result == 1) return program.active_constraints;
   return 0;

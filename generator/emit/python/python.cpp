@@ -17,11 +17,36 @@ namespace eomgen::emit {
 namespace {
 
 // Functions that the module wraps.
-constexpr const char* wrapped_functions[] = {
-    "rhs",       "jac",     "jac_p",    "jac_u",        "jvp",    "vjp",     "adjoint",
-    "hvp",       "inverse", "coriolis", "gravity",      "mass",   "momenta", "constraints",
-    "reactions", "outputs", "events",   "contact_rows", "resets", "frames",  "energy_gradients",
-    "taylor"};
+constexpr const char* wrapped_functions[] = {"rhs",
+                                             "jac",
+                                             "jac_p",
+                                             "jac_u",
+                                             "jvp",
+                                             "vjp",
+                                             "adjoint",
+                                             "hvp",
+                                             "inverse",
+                                             "coriolis",
+                                             "gravity",
+                                             "mass",
+                                             "momenta",
+                                             "constraints",
+                                             "reactions",
+                                             "outputs",
+                                             "events",
+                                             "contact_rows",
+                                             "resets",
+                                             "frames",
+                                             "energy_gradients",
+                                             "taylor",
+                                             "regressor",
+                                             "momentum",
+                                             "reactions_jac",
+                                             "reactions_jac_p",
+                                             "reactions_jac_u",
+                                             "outputs_jac",
+                                             "outputs_jac_p",
+                                             "outputs_jac_u"};
 
 /// _rhs = _function("rhs", "daaaia"): one letter per argument type.
 std::string c_function_declarations() {

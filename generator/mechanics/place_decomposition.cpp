@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "derive/trees/place_decomposition.hpp"
+#include "mechanics/place_decomposition.hpp"
 
-namespace eomgen::derive {
+namespace eomgen::mechanics {
 namespace {
 
 class PositionReader {
  public:
-  PositionReader(const Mechanics& m, mechanics::Lowering& lower) : m_(m), dag_(*m.dag), lower_(lower) {}
+  PositionReader(const Mechanics& m, Lowering& lower) : m_(m), dag_(*m.dag), lower_(lower) {}
 
   /// Adds factor times the vector `id` to the result. False if its form is not supported.
   bool read(model::NodeId id, Ref factor) {
@@ -53,16 +53,16 @@ class PositionReader {
 
   const Mechanics& m_;
   Dag& dag_;
-  mechanics::Lowering& lower_;
+  Lowering& lower_;
   PlaceDecomposition result_;
 };
 
 }  // namespace
 
-std::optional<PlaceDecomposition> decompose_place(const Mechanics& m, mechanics::Lowering& lower, std::uint32_t place) {
+std::optional<PlaceDecomposition> decompose_place(const Mechanics& m, Lowering& lower, std::uint32_t place) {
   PositionReader reading(m, lower);
   if (!reading.read(m.model->places[place].position, m.dag->one())) return std::nullopt;
   return reading.result();
 }
 
-}  // namespace eomgen::derive
+}  // namespace eomgen::mechanics

@@ -5,10 +5,9 @@
 #include <map>
 #include <optional>
 
-#include "derive/imposition.hpp"
 #include "mechanics/lowering.hpp"
 
-namespace eomgen::derive {
+namespace eomgen::mechanics {
 
 struct PlaceDecomposition {
   std::optional<std::uint32_t> from;         // a place; none: the origin
@@ -16,7 +15,6 @@ struct PlaceDecomposition {
 };
 
 /// Empty if the position is not such a sum (cross products, unit vectors, ..).
-std::optional<PlaceDecomposition> decompose_place(const Mechanics& mechanics, mechanics::Lowering& lower,
-                                                  std::uint32_t place);
+std::optional<PlaceDecomposition> decompose_place(const Mechanics& mechanics, Lowering& lower, std::uint32_t place);
 
-}  // namespace eomgen::derive
+}  // namespace eomgen::mechanics
