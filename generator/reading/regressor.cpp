@@ -2,11 +2,11 @@
 #include "reading/regressor.hpp"
 
 #include <algorithm>
-#include <map>
 
 #include "mechanics/imposition.hpp"
+#include "reading/base_parameters.hpp"
+#include "reading/column_relations.hpp"
 #include "reading/ginac_bridge.hpp"
-#include "reading/rational_function.hpp"
 #include "reading/trig.hpp"
 #include "symbolic/calculus.hpp"
 
@@ -16,6 +16,9 @@ namespace {
 using mechanics::Mechanics;
 using symbolic::Ref;
 using symbolic::Vec3;
+
+/// Of the written columns of Y, and of relations between them.
+constexpr std::size_t writing_budget = form_budget / 2;
 
 /// T and U of one parameter of size 1.
 struct Energies {
@@ -31,6 +34,10 @@ class RegressorReader {
         ddt_(symbolic::total_time_derivative(dag_, m_.q.size(), m_.model->functions.size())),
         imposed_(mechanics::constraint_substitution(m_)),
         gravity_(symbolic::zero_vector(dag_)) {
+    for (const std::uint32_t i : m_.free) {
+      by_q_.push_back(symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 0}));
+      by_rate_.push_back(symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 1}));
+    }
     for (const model::Force& force : m_.model->forces)
       if (force.acceleration() != model::no_node)
         gravity_ = symbolic::add(dag_, gravity_, mechanics::lower_vector(m_, force.acceleration()));
@@ -44,7 +51,10 @@ class RegressorReader {
       add({InertialParameter::Kind::mass, mass.place, 0, 0, bridge_.sum(mass.mass)},
           {half(symbolic::dot(dag_, mass.velocity, mass.velocity)), weight(mass.position)});
     }
-    find_base();
+    if (write_columns() && find_base()) return std::move(result_);
+    for (std::vector<Ref>& column : columns_)
+      for (Ref& force : column) force = imposed_(force);
+    find_carried_base(m_, columns_, result_);
     return std::move(result_);
   }
 
@@ -79,109 +89,72 @@ class RegressorReader {
 
   /// d/dt(dT/dqdot) - dT/dq + dU/dq of every free coordinate.
   void add(InertialParameter parameter, const Energies& of) {
-    std::vector<Sum> column;
-    for (const std::uint32_t i : m_.free) {
-      symbolic::Derivation by_q = symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 0}),
-                           by_rate = symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 1});
-      const Ref force = dag_.add(dag_.sub(ddt_(by_rate(of.kinetic)), by_q(of.kinetic)), by_q(of.potential));
-      column.push_back(simplify(bridge_.sum(imposed_(force))));
+    std::vector<Ref> column;
+    for (std::size_t i = 0; i < m_.free.size(); ++i) {
+      symbolic::Derivation &by_q = by_q_[i], &by_rate = by_rate_[i];
+      column.push_back(dag_.add(dag_.sub(ddt_(by_rate(of.kinetic)), by_q(of.kinetic)), by_q(of.potential)));
     }
     result_.parameters.push_back(std::move(parameter));
-    result_.columns.push_back(std::move(column));
+    columns_.push_back(std::move(column));
   }
 
-  static bool is_constant(const Atom& atom) {
-    bool constant = atom.op != Op::symbol || atom.symbol.kind == SymbolKind::parameter;
-    for (const Sum& arg : atom.args)
-      for_each_atom(arg, [&constant](const Atom& inner) {
-        constant = constant && (inner.op != Op::symbol || inner.symbol.kind == SymbolKind::parameter);
-      });
-    return constant;
+  /// Writes columns until one is too long. Those with at least as many coordinates are not tried then.
+  bool write_columns() {
+    const work::Budget budget(writing_budget);
+    std::size_t longest = m_.free.size() + 1;
+    for (std::size_t j = 0; j < columns_.size(); ++j) {
+      std::vector<Sum>& column = result_.columns.emplace_back();
+      const std::size_t coordinates = coordinates_in(columns_[j]);
+      if (coordinates >= longest) continue;
+      try {
+        for (const Ref force : columns_[j]) column.push_back(simplify(bridge_.sum(imposed_(force))));
+      } catch (const work::BudgetExceeded&) {
+        column.clear();
+        longest = std::max<std::size_t>(coordinates, 1);
+      }
+    }
+    return longest > m_.free.size();
+  }
+  std::size_t coordinates_in(const std::vector<Ref>& column) const {
+    const std::vector<Symbol> symbols = dag_.symbols(column);
+    return static_cast<std::size_t>(std::count_if(symbols.begin(), symbols.end(), [](const Symbol& s) {
+      return s.kind == SymbolKind::coordinate && s.order == 0;
+    }));
   }
 
-  using Row = std::map<std::size_t, Sum>;  // column to entry, without zeros
-
-  /// A row per coordinate and product of functions of the motion, which are independent: its factors in each column.
-  std::vector<Row> rows() const {
-    std::vector<std::map<Monomial, Row, MonomialLess>> by_coordinate(m_.free.size());
-    for (std::size_t j = 0; j < result_.columns.size(); ++j) {
-      for (std::size_t i = 0; i < m_.free.size(); ++i) {
-        const Sum expanded = expand_angles(result_.columns[j][i]);
-        for (const auto& [monomial, coefficient] : expanded.terms()) {
-          Monomial motion, constant;
-          for (const Factor& factor : monomial) (is_constant(*factor.atom) ? constant : motion).push_back(factor);
-          by_coordinate[i][motion][j].add(constant, coefficient);
+  bool find_base() {
+    try {
+      const work::Budget budget(writing_budget);
+      const Echelon pivots = relate_columns(result_.columns);
+      std::vector<bool> has_effect(result_.columns.size(), false);
+      for (const auto& [column, row] : pivots) {
+        result_.base.push_back({column, {}});
+        for (const auto& [j, factor] : row) {
+          has_effect[j] = true;
+          if (j != column) result_.base.back().further.emplace_back(j, factor);
         }
       }
+      for (std::size_t j = 0; j < has_effect.size(); ++j)
+        if (!has_effect[j]) result_.without_effect.push_back(j);
+      return true;
+    } catch (const work::BudgetExceeded&) {
+      return false;
     }
-    std::vector<Row> all;
-    for (auto& of_coordinate : by_coordinate) {
-      for (auto& [motion, row] : of_coordinate) {
-        std::erase_if(row, [](const auto& entry) { return entry.second.is_zero(); });
-        if (!row.empty()) all.push_back(std::move(row));
-      }
-    }
-    // Short rows first: they keep the factors of the elimination simple.
-    std::stable_sort(all.begin(), all.end(), [](const Row& a, const Row& b) { return a.size() < b.size(); });
-    return all;
-  }
-
-  static void subtract(Row& from, const Sum& factor, const Row& row) {
-    for (const auto& [j, entry] : row) {
-      Sum& sum = from[j];
-      sum = cancel(sum - factor * entry);
-      if (sum.is_zero()) from.erase(j);
-    }
-  }
-
-  /// The reduced row echelon form: column k is the sum of P_bk times column b over the pivots b.
-  void find_base() {
-    std::map<std::size_t, Row> pivots;
-    for (Row row : rows()) {
-      for (const auto& [column, pivot] : pivots) {
-        const auto here = row.find(column);
-        if (here == row.end()) continue;
-        const Sum factor = here->second;
-        subtract(row, factor, pivot);
-      }
-      if (row.empty()) continue;
-      const std::size_t column = row.begin()->first;
-      const Sum lead = row.begin()->second;
-      for (auto& [j, entry] : row) entry = quotient(entry, lead);
-      for (auto& [other, pivot] : pivots) {
-        const auto here = pivot.find(column);
-        if (here == pivot.end()) continue;
-        const Sum factor = here->second;
-        subtract(pivot, factor, row);
-      }
-      pivots.emplace(column, std::move(row));
-    }
-    std::vector<bool> has_effect(result_.columns.size(), false);
-    for (auto& [column, row] : pivots) {
-      result_.base.push_back({column, {}});
-      for (auto& [j, factor] : row) {
-        has_effect[j] = true;
-        if (j != column) result_.base.back().further.emplace_back(j, std::move(factor));
-      }
-    }
-    for (std::size_t j = 0; j < has_effect.size(); ++j)
-      if (!has_effect[j]) result_.without_effect.push_back(j);
   }
 
   Mechanics m_;  // shares the Dag; lowering adds nodes to it
   symbolic::Dag& dag_;
   GinacBridge bridge_;
   symbolic::Derivation ddt_;
+  std::vector<symbolic::Derivation> by_q_, by_rate_;  // per free coordinate
   symbolic::Substitution imposed_;
   Vec3 gravity_;
+  std::vector<std::vector<Ref>> columns_;
   Regressor result_;
 };
 
 }  // namespace
 
-Regressor regressor(const Mechanics& m) {
-  const work::Budget budget(form_budget);
-  return RegressorReader(m)();
-}
+Regressor regressor(const Mechanics& m) { return RegressorReader(m)(); }
 
 }  // namespace eomgen::reading

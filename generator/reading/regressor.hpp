@@ -29,12 +29,12 @@ struct BaseParameter {
 
 struct Regressor {
   std::vector<InertialParameter> parameters;
-  std::vector<std::vector<Sum>> columns;    // per parameter: one entry per free coordinate
+  std::vector<std::vector<Sum>> columns;    // per parameter: one entry per free coordinate; none if they are too long
   std::vector<BaseParameter> base;          // p_b + sum factor p_k
   std::vector<std::size_t> without_effect;  // parameters whose columns are 0
+  std::string base_left_out;                // why there are no base parameters; empty if there are
 };
 
-/// Throws work::BudgetExceeded if the entries are too long.
 Regressor regressor(const mechanics::Mechanics& mechanics);
 
 }  // namespace eomgen::reading

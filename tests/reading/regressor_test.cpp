@@ -5,9 +5,12 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "model/model.hpp"
+#include "reading/atom_table.hpp"
+#include "reading/base_parameters.hpp"
 #include "reading/by_name.hpp"
 #include "symbolic/calculus.hpp"
 #include "symbolic/evaluate.hpp"
@@ -157,4 +160,59 @@ TEST_CASE("regressor: base parameters carry all of Y p, and no fewer do") {
       CHECK(all == doctest::Approx(of_base).epsilon(1e-10));
     }
   }
+}
+
+TEST_CASE("regressor: relations between bodies and their carriers give the base parameters of all columns") {
+  const std::string slider = body("B", "L*A.e1 + s*A.e2 + b*B.e1", "{ axis = \"A.e2\", angle = \"p\" }", "A");
+  const std::string load = "[[particle]]\nname = \"load\"\nmass = \"m\"\nposition = \"L*A.e1 + L*B.e1 + b*B.e3\"\n";
+  for (const std::string& text :
+       {head + inertias("A") + rod + tail, head + inertias("A") + inertias("B") + rod + second + tail,
+        head + inertias("A") + inertias("B") + rod + across + load + tail,
+        head + inertias("A") + inertias("B") + "[coordinates]\ns = \"m\"\n" + rod + slider + tail}) {
+    System s(model::read_model_text(text, "carried"));
+    const Regressor written = reading::regressor(s.mechanics);
+    REQUIRE_FALSE(written.base.empty());
+    Regressor found;
+    found.parameters = written.parameters;
+    found.columns = written.columns;
+    std::vector<std::vector<symbolic::Ref>> columns;
+    for (const std::vector<Sum>& column : written.columns) {
+      columns.emplace_back();
+      for (const Sum& entry : column) columns.back().push_back(reading::to_dag(*s.mechanics.dag, entry));
+    }
+    reading::find_carried_base(s.mechanics, columns, found);
+    CHECK(found.base_left_out.empty());
+    CHECK(found.base.size() == written.base.size());
+    CHECK(found.without_effect == written.without_effect);
+  }
+}
+
+TEST_CASE("regressor: an arm of seven joints has its base parameters as formulas") {
+  std::string text = head, links, base;
+  for (int k = 1; k <= 7; ++k) {
+    const std::string name = "b" + std::to_string(k), before = "b" + std::to_string(k - 1);
+    text += inertias(name);
+    links += body(name, base + "b*" + name + ".e1",
+                  "{ axis = \"" + (k > 1 ? before + ".e" : std::string("E")) + (k % 2 == 1 ? "3" : "2") +
+                      "\", angle = \"q" + std::to_string(k) + "\" }",
+                  k > 1 ? before : "");
+    links += "[[point]]\nname = \"J" + std::to_string(k) + "\"\nposition = \"" + base + "L*" + name + ".e1\"\n";
+    base = "J" + std::to_string(k) + " + ";
+  }
+  System s(
+      model::read_model_text(text + links + "[[force]]\ngravity = \"-g*E3\"\n[scene.default]\nt = [0, 1]\n", "arm"));
+  const Regressor r = reading::regressor(s.mechanics);
+  CHECK(r.base_left_out.empty());
+  CHECK(r.base.size() == 43);  // one of the first link, seven of each other
+  CHECK(std::any_of(r.columns.begin(), r.columns.end(), [](const auto& column) { return column.empty(); }));
+  // m c1 + b m + L m_7: what the last links hang at their joint
+  const std::size_t moment = 5 * 10 + 6;
+  const auto found =
+      std::find_if(r.base.begin(), r.base.end(), [](const reading::BaseParameter& b) { return b.parameter == moment; });
+  REQUIRE(found != r.base.end());
+  REQUIRE(found->further.size() == 2);
+  CHECK(found->further[0].first == 5 * 10 + 9);
+  CHECK(same(found->further[0].second, s.symbol("b")));
+  CHECK(found->further[1].first == 6 * 10 + 9);
+  CHECK(same(found->further[1].second, s.symbol("L")));
 }
