@@ -116,6 +116,39 @@ class CompiledModelTest(unittest.TestCase):
         with self.assertRaises(eomgen.Error):
             f.jvp(0.0, x, v[:3])
 
+    def test_jacobians_of_outputs_and_reactions_are_slopes(self):
+        functions = [of + "_jac" + by for of in ("outputs", "reactions") for by in ("", "_p", "_u")]
+        f = shipped("n_four_bar_2").compile(functions=functions + ["reactions"], outputs=["energy", "power"])
+        x, p = f.start + 0.1, f.parameters
+        for of in ("outputs", "reactions"):
+            values = getattr(f, of)
+            self.assertEqual(getattr(f, of + "_jac_t")(0.0, x).tolist(), [0] * len(values(0.0, x)))
+            self.assertEqual(getattr(f, of + "_jac_u")(0.0, x).shape, (len(values(0.0, x)), len(f.input_names)))
+            for name, arguments, j in ((of + "_jac", [x, p], 0), (of + "_jac_p", [x, p], 1)):
+                J = getattr(f, name)(0.0, x, None, p)
+                for k in range(J.shape[1]):
+                    d = 1e-6 * np.eye(J.shape[1])[k]
+                    up, down = list(arguments), list(arguments)
+                    up[j], down[j] = up[j] + d, down[j] - d
+                    slope = (values(0.0, up[0], None, up[1]) - values(0.0, down[0], None, down[1])) / 2e-6
+                    np.testing.assert_allclose(J[:, k], slope, rtol=1e-6, atol=1e-6, err_msg=name)
+
+    def test_regressor_and_momentum_are_those_of_the_masses(self):
+        f = shipped("spatial_chain_3").compile(functions=["regressor", "inverse", "momentum", "frames"])
+        n = f.coordinate_count
+        x = np.random.default_rng(5).uniform(0.3, 1.2, len(f.state_names))
+        Y, inertial = f.regressor(0.0, x, np.ones(n))
+        self.assertEqual(Y.shape, (n, len(f.inertial_parameter_names)))
+        self.assertEqual(inertial.shape, (len(f.inertial_parameter_names),))
+        masses = dict(zip(f.inertial_parameter_names, inertial))
+        AG, hG, centre = f.momentum(0.0, x)
+        self.assertEqual((AG.shape, hG.shape, centre.shape), ((6, n), (6,), (3,)))
+        frames = f.frames(0.0, x)
+        P = sum(masses[name + ".mass"] * frame.jacobian[:3] for name, frame in frames.items() if name + ".mass" in masses)
+        np.testing.assert_allclose(AG[3:], P, atol=1e-12)
+        many = f.momentum(0.0, np.tile(x, (4, 1)))
+        np.testing.assert_array_equal(many[1][2], hG)
+
     def test_mass_and_bias_give_the_accelerations(self):
         x = self.states(1)[0]
         mass, bias = self.f.mass(0.0, x)
