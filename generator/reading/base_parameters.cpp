@@ -19,7 +19,7 @@ using cln::cl_R;
 using mechanics::Mechanics;
 using symbolic::Ref;
 
-constexpr int digits = 60;
+constexpr int rank_digits = 60;
 // Random numbers of three digits, some hundred operations: what is not 0 is far above, and what is 0 far below.
 constexpr int zero_digits = 25;
 
@@ -131,7 +131,7 @@ class CarriedBase {
       work::throw_if_stopped();
       try {
         const std::vector<cl_R> values = symbolic::evaluate(
-            *m_.dag, roots, [round](const symbolic::Symbol& s) { return random_number(s, round); }, digits);
+            *m_.dag, roots, [round](const symbolic::Symbol& s) { return random_number(s, round); }, rank_digits);
         for (std::size_t i = 0; i < n; ++i) {
           const auto row = values.begin() + static_cast<std::ptrdiff_t>(i * count);
           rows.emplace_back(row, row + static_cast<std::ptrdiff_t>(count));
@@ -204,7 +204,7 @@ class CarriedBase {
         if (const auto found = terms_[j].find(pivot); found != terms_[j].end())
           value = symbolic::evaluate(
               *m_.dag, {to_dag(*m_.dag, found->second)}, [](const symbolic::Symbol& s) { return random_number(s, 0); },
-              digits)[0];
+              rank_digits)[0];
         if (cln::abs(value - row[j]) > least) return false;
       }
     }

@@ -22,7 +22,7 @@ bool any_symbol(const Atom& atom, const Predicate& predicate) {
 bool is_constant(const Atom& atom) {
   return !any_symbol(atom, [](const Symbol& symbol) { return symbol.kind != SymbolKind::parameter; });
 }
-bool moves(const Atom& atom) {
+bool depends_on_motion(const Atom& atom) {
   return any_symbol(atom, [](const Symbol& symbol) {
     return symbol.kind == SymbolKind::coordinate || symbol.kind == SymbolKind::vector;
   });
@@ -37,8 +37,8 @@ std::vector<ColumnEntries> rows_of(const std::vector<std::vector<Sum>>& columns,
       for (const auto& [monomial, coefficient] : expanded.terms()) {
         Monomial motion, constant;
         for (const Factor& factor : monomial) (is_constant(*factor.atom) ? constant : motion).push_back(factor);
-        if (of_motion &&
-            std::none_of(motion.begin(), motion.end(), [](const Factor& factor) { return moves(*factor.atom); }))
+        if (of_motion && std::none_of(motion.begin(), motion.end(),
+                                      [](const Factor& factor) { return depends_on_motion(*factor.atom); }))
           continue;
         by_entry[i][motion][j].add(constant, coefficient);
       }

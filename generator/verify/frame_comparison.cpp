@@ -13,12 +13,6 @@ namespace {
 constexpr std::size_t twist = 6, pose = 12;
 enum FramePart { poses, jacobians, accelerations };
 
-Real largest_of(const Components& v) { return cln::max(cln::max(cln::abs(v[0]), cln::abs(v[1])), cln::abs(v[2])); }
-
-Components cross_product(const Components& a, const Components& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 class FrameComparison {
  public:
   FrameComparison(const AbiResults& values, const AbiResults& sizes, const std::vector<std::uint32_t>& free,

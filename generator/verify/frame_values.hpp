@@ -12,6 +12,13 @@ namespace eomgen::verify {
 
 using Components = std::array<Real, 3>;
 
+inline Real largest_of(const Components& v) {
+  return cln::max(cln::max(cln::abs(v[0]), cln::abs(v[1])), cln::abs(v[2]));
+}
+inline Components cross_product(const Components& a, const Components& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
 struct PlaceMotion {
   Components position, velocity, acceleration;
   std::vector<Components> tangent;  // dr/dq_i

@@ -10,10 +10,6 @@ namespace eomgen::verify {
 namespace {
 
 Real dot(const Components& a, const Components& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Real largest_of(const Components& v) { return cln::max(cln::max(cln::abs(v[0]), cln::abs(v[1])), cln::abs(v[2])); }
-Components cross_product(const Components& a, const Components& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 Components real_parts(const Vector& v) { return {v[0].real(), v[1].real(), v[2].real()}; }
 
 using AxisMotions = std::array<PlaceMotion, 3>;

@@ -34,8 +34,8 @@ g = "9.81 m/s^2"
 )";
 const std::string gravity = "[[force]]\ngravity = \"-g*E2\"\n", scene = "[scene.default]\nt = [0, 1]\n";
 
-std::string link(const std::string& name, const std::string& position, const std::string& rotation,
-                 const std::string& parent = "") {
+std::string solid(const std::string& name, const std::string& position, const std::string& rotation,
+                  const std::string& parent = "") {
   return "[[body]]\nname = \"" + name +
          "\"\nmass = \"m\"\ninertia = [[\"A\", \"D\", \"0\"], [\"D\", \"B\", \"-D\"], [\"0\", \"-D\", "
          "\"C\"]]\nposition "
@@ -45,8 +45,8 @@ std::string link(const std::string& name, const std::string& position, const std
 std::string particle(const std::string& name, const std::string& position) {
   return "[[particle]]\nname = \"" + name + "\"\nmass = \"m\"\nposition = " + position + "\n";
 }
-const std::string rod = link("rod", "\"b*rod.e1\"", "{ axis = \"E3\", angle = \"q\" }"),
-                  second = link("arm", "\"L*rod.e1 + b*arm.e1\"", "{ axis = \"rod.e2\", angle = \"p\" }", "rod");
+const std::string rod = solid("rod", "\"b*rod.e1\"", "{ axis = \"E3\", angle = \"q\" }"),
+                  second = solid("arm", "\"L*rod.e1 + b*arm.e1\"", "{ axis = \"rod.e2\", angle = \"p\" }", "rod");
 
 struct Functions {
   std::unique_ptr<mechanics::Mechanics> mechanics;
@@ -68,9 +68,9 @@ struct Functions {
   }
 };
 
-using Change = std::function<void(symbolic::Dag&, system::Inertias&)>;
+using InertiaChange = std::function<void(symbolic::Dag&, system::Inertias&)>;
 
-Functions functions_of(const std::string& text, const Change& change = nullptr) {
+Functions functions_of(const std::string& text, const InertiaChange& change = nullptr) {
   Functions result;
   result.mechanics =
       std::make_unique<mechanics::Mechanics>(mechanics::build_mechanics(model::read_model_text(text, "inertias")));
@@ -119,17 +119,17 @@ verify::Certificate certificate_of(const Functions& functions) {
   return verify::certify(*functions.mechanics, subjects, {50, 3, 1});
 }
 
-bool agrees(const verify::Certificate& certificate, const std::string& what) {
+bool is_confirmed(const verify::Certificate& certificate, const std::string& what) {
   const auto row = std::find_if(certificate.comparisons.begin(), certificate.comparisons.end(),
                                 [&](const verify::Comparison& c) { return c.a == what + " of program"; });
   REQUIRE(row != certificate.comparisons.end());
   return row->pass;
 }
 
-const std::string disk =
+const std::string rolling_disk =
     std::string(inertia_numbers) +
-    link("disk", "{ cartesian = [\"x\", \"y\", \"z\"] }",
-         "{ euler = \"313\", angles = [\"psi\", \"theta\", \"phi\"] }") +
+    solid("disk", "{ cartesian = [\"x\", \"y\", \"z\"] }",
+          "{ euler = \"313\", angles = [\"psi\", \"theta\", \"phi\"] }") +
     "[[constraint]]\nname = \"floor\"\nrolling = { body = \"disk\", at = \"-L*disk.e2''\", on = \"ground\" }\n" +
     gravity + "[scene.default]\nt = [0, 1]\ninitial = { theta = 1, phi_dot = 2 }\n";
 
@@ -138,24 +138,24 @@ const std::string disk =
 TEST_CASE("inertias: regressors and momenta of arms, driven bodies, quaternions and particles agree with the oracle") {
   const std::string head = inertia_numbers;
   const std::string driven =
-      link("crank", "\"L*cos(w*t)*E1 + L*sin(w*t)*E2\"", "{ euler = \"313\", angles = [\"psi\", \"w*t\", \"phi\"] }");
+      solid("crank", "\"L*cos(w*t)*E1 + L*sin(w*t)*E2\"", "{ euler = \"313\", angles = [\"psi\", \"w*t\", \"phi\"] }");
   const std::string four =
-      link("top", "{ cartesian = [\"x\", \"y\", \"z\"] }", "{ euler_parameters = [\"p0\", \"p1\", \"p2\", \"p3\"] }");
+      solid("top", "{ cartesian = [\"x\", \"y\", \"z\"] }", "{ euler_parameters = [\"p0\", \"p1\", \"p2\", \"p3\"] }");
   const std::string prescribed = "[functions]\nd = \"L*sin(w*t)\"\n" +
                                  particle("cart", "{ cartesian = [\"x\", \"y\"] }") +
                                  "[[constraint]]\nname = \"drive\"\nholonomic = \"x - d\"\n" +
-                                 link("bob", "\"cart + b*bob.e1\"", "{ axis = \"E3\", angle = \"alpha\" }");
+                                 solid("bob", "\"cart + b*bob.e1\"", "{ axis = \"E3\", angle = \"alpha\" }");
   const std::string two = particle("P", "{ spherical = [\"R\", \"phi\", \"theta\"] }") +
                           particle("Q", "{ cylindrical = [\"r\", \"psi\", \"z\"], from = \"P\" }");
   for (const std::string& text :
        {head + rod + second + gravity + scene, head + driven + scene, head + four + gravity + scene,
-        head + prescribed + gravity + scene, head + two + scene, disk}) {
+        head + prescribed + gravity + scene, head + two + scene, rolling_disk}) {
     const Functions functions = functions_of(text);
     const verify::Certificate certificate = certificate_of(functions);
     INFO(certificate.summary());
     CHECK(certificate.pass);
-    CHECK(agrees(certificate, "regressor"));
-    CHECK(agrees(certificate, "momentum"));
+    CHECK(is_confirmed(certificate, "regressor"));
+    CHECK(is_confirmed(certificate, "momentum"));
   }
 }
 
@@ -190,7 +190,7 @@ TEST_CASE("inertias: a pendulum has the columns of the textbook") {
 TEST_CASE("inertias: the momentum of a body that nothing holds is that of its mass and spin") {
   const Functions functions =
       functions_of(std::string(inertia_numbers) +
-                   link("rod", "{ cartesian = [\"x\", \"y\"] }", "{ axis = \"E3\", angle = \"q\" }") + scene);
+                   solid("rod", "{ cartesian = [\"x\", \"y\"] }", "{ axis = \"E3\", angle = \"q\" }") + scene);
   const auto momentum = functions.at("momentum", 0, {0.3, -0.2, 0.9, 1.1, 0.7, 2});
   const double c = std::cos(0.9), s = std::sin(0.9);
   const std::vector<double> whole{s * 0.05 * 2, -c * 0.05 * 2, 0.4 * 2, 2 * 1.1, 2 * 0.7, 0}, centre{0.3, -0.2, 0};
@@ -204,7 +204,7 @@ TEST_CASE("inertias: the momentum of a body that nothing holds is that of its ma
 TEST_CASE("inertias: wrong masses, tensors, spins and gravity are found") {
   using symbolic::Ref;
   const auto scaled = [](symbolic::Dag& dag, Ref& r) { r = dag.mul(r, dag.constant(symbolic::Rational(1001) / 1000)); };
-  const std::vector<std::pair<std::string, Change>> changes{
+  const std::vector<std::pair<std::string, InertiaChange>> changes{
       {"regressor", [&](symbolic::Dag& dag, system::Inertias& all) { scaled(dag, all.of.back().mass); }},
       {"momentum", [&](symbolic::Dag& dag, system::Inertias& all) { scaled(dag, all.of.back().mass); }},
       {"regressor", [&](symbolic::Dag& dag, system::Inertias& all) { scaled(dag, all.of.back().body->tensor[1]); }},
@@ -217,7 +217,7 @@ TEST_CASE("inertias: wrong masses, tensors, spins and gravity are found") {
     CAPTURE(k);
     const Functions functions =
         functions_of(std::string(inertia_numbers) + rod + second + gravity + scene, changes[k].second);
-    CHECK_FALSE(agrees(certificate_of(functions), changes[k].first));
+    CHECK_FALSE(is_confirmed(certificate_of(functions), changes[k].first));
   }
 }
 
@@ -225,10 +225,10 @@ TEST_CASE("inertias: the regressor of an arm of seven joints takes few operation
   std::string text = inertia_numbers, base;
   for (int k = 1; k <= 7; ++k) {
     const std::string name = "b" + std::to_string(k), before = "b" + std::to_string(k - 1);
-    text += link(name, "\"" + base + "b*" + name + ".e1\"",
-                 "{ axis = \"" + (k > 1 ? before + ".e" : std::string("E")) + (k % 2 == 1 ? "3" : "2") +
-                     "\", angle = \"q" + std::to_string(k) + "\" }",
-                 k > 1 ? before : "");
+    text += solid(name, "\"" + base + "b*" + name + ".e1\"",
+                  "{ axis = \"" + (k > 1 ? before + ".e" : std::string("E")) + (k % 2 == 1 ? "3" : "2") +
+                      "\", angle = \"q" + std::to_string(k) + "\" }",
+                  k > 1 ? before : "");
     text += "[[point]]\nname = \"J" + std::to_string(k) + "\"\nposition = \"" + base + "L*" + name + ".e1\"\n";
     base = "J" + std::to_string(k) + " + ";
   }
