@@ -141,6 +141,7 @@ class CompiledModel {
  private:
   friend class Model;
   friend class Simulation;
+  friend class FixedStep;
   explicit CompiledModel(std::shared_ptr<const State> state) : state_(std::move(state)) {}
   std::shared_ptr<const State> state_;
 };

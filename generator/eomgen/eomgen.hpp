@@ -2,5 +2,6 @@
 // Includes the whole library (docs/library.md).
 #pragma once
 
+#include "eomgen/fixed_step.hpp"
 #include "eomgen/model.hpp"
 #include "eomgen/robot.hpp"

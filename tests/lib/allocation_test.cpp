@@ -7,6 +7,7 @@
 
 #include "eom/ensemble/integrate.hpp"
 #include "eom/ode.hpp"
+#include "lib/discrete_model.hpp"
 #include "lib/ensemble_members.hpp"
 
 namespace {
@@ -152,5 +153,22 @@ TEST_CASE("ensembles: a hundred members over 100 periods make as many allocation
     const std::size_t of_one = count(1, 0.6);
     CHECK(of_one > 0);
     CHECK(count(100, 600) == of_one);
+  }
+}
+
+TEST_CASE("steps as functions: no call allocates, with derivatives or without") {
+  namespace model = discrete_model;
+  for (const char* method : eom::discrete::method_names) {
+    CAPTURE(std::string(method));
+    const std::size_t at_first = allocations;
+    eom::discrete::Step step(method, model::sizes);
+    CHECK(allocations > at_first);
+    const eom::discrete::Arguments at{0, 0.1, model::x, model::p, model::u};
+    double x1[2], J[4], P[4], U[2], T[2], H[2];
+    const std::size_t before = allocations;
+    int code = step(model::functions, at, x1);
+    code += step.derivatives(model::functions, at, x1, {.x = J, .p = P, .u = U, .t = T, .h = H});
+    CHECK(allocations == before);
+    CHECK(code == 0);
   }
 }
