@@ -12,7 +12,7 @@ Quantities are in SI units everywhere, angles in radians. Arrays are NumPy array
 
 from ._core import solvers, targets
 from ._core import version as __version__
-from .compiled import CompiledModel
+from .compiled import CompiledModel, StepJacobian
 from .control import DiscreteStep, StateSpace, TransferFunction, Trim
 from .definition import (
     Body,
@@ -55,6 +55,7 @@ __all__ = [
     "Simulation",
     "State",
     "StateSpace",
+    "StepJacobian",
     "TransferFunction",
     "Trim",
     "if_",

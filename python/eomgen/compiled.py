@@ -39,6 +39,22 @@ class Frame(NamedTuple):
     bias: "NDArray[Any]"
 
 
+class StepJacobian(NamedTuple):
+    """The end of a step and its derivatives: ``compiled.step_jac(t, h, x)``. K states give arrays with K in front.
+
+    ``x1``: (N,). ``A``: dx1/dx, (N, N). ``B``: dx1/d(inputs), (N, U); None unless "jac_u" was compiled. ``P``:
+    dx1/d(parameters), (N, P), each parameter by itself; None unless "jac_p" was compiled. ``h``, ``t``: dx1/dh and
+    dx1/dt, (N,).
+    """
+
+    x1: "NDArray[Any]"
+    A: "NDArray[Any]"
+    B: "Optional[NDArray[Any]]"
+    P: "Optional[NDArray[Any]]"
+    h: "NDArray[Any]"
+    t: "NDArray[Any]"
+
+
 class CompiledModel(_core.CompiledModel):
     """Verified and compiled equations with the numbers of one scene: ``model.compile()``.
 
@@ -185,6 +201,31 @@ class CompiledModel(_core.CompiledModel):
     ) -> "NDArray[Any]":
         """Coefficients of the power series of the motion at constant inputs: (order + 1, N)."""
         return self._taylor(t, x, order, inputs, parameters, mode)
+
+    @staticmethod
+    def step_methods() -> List[str]:
+        """The methods of ``step``: explicit ones of order 4, 5, 5 and 8, and the implicit midpoint rule."""
+        return _core.CompiledModel._step_methods()
+
+    def step(
+        self, t: Any, h: Any, x: Any, inputs: Any = None, parameters: Any = None, mode: Any = None, method: str = "rk4"
+    ) -> "NDArray[Any]":
+        """The state after one step of a fixed-step method: (N,), or (K, N) of K states.
+
+        Arguments as of rhs. ``h`` in s: a number or (K,), may be negative. ``method``: one of ``step_methods()``;
+        "midpoint" needs "jac". Inputs are held over the step. Contacts and kinks stay in ``mode``, events are ignored,
+        and no constraint is projected: a Simulation does that.
+        """
+        return self._step(t, h, x, inputs, parameters, mode, method, False)[0]
+
+    def step_jac(
+        self, t: Any, h: Any, x: Any, inputs: Any = None, parameters: Any = None, mode: Any = None, method: str = "rk4"
+    ) -> StepJacobian:
+        """The same with its derivatives, which are exact for the method. Needs "jac".
+
+        Derivatives of a motion follow by the chain rule: S = step.A @ S + step.P.
+        """
+        return StepJacobian(*self._step(t, h, x, inputs, parameters, mode, method, True))
 
     def frames(self, t: Any, x: "NDArray[Any]", parameters: Any = None, mode: Any = None) -> Dict[str, Frame]:
         """Poses, Jacobians and bias accelerations of bodies, particles and points by name.

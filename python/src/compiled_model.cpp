@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // eomgen._core.CompiledModel: functions of one state or of many, without the GIL.
+#include <eomgen/fixed_step.hpp>
 #include <limits>
 #include <type_traits>
 
@@ -19,6 +20,7 @@ const char* meaning_of(int code) {
     case 4: return "the friction law has several solutions in this mode";
     case 5: return "a value is not finite";
     case 6: return "the order is too large";
+    case FixedStep::no_convergence: return "the step could not be solved";
     default: return "docs/abi.md, 'Return codes'";
   }
 }
@@ -255,6 +257,77 @@ py::array taylor(const CompiledModel& model, double t, const py::array& state, i
   return result;
 }
 
+/// An argument of a step that is one number, or one of each state.
+std::size_t step_of_number(const char* name, const Numbers& given, std::size_t count, bool many) {
+  if (!given || given.dimensions() > 1 ||
+      (given.dimensions() == 1 && (!many || static_cast<std::size_t>(given.length(0)) != count)))
+    refuse_shape(name, given, many ? "a number or (" + std::to_string(count) + ",)" : "a number");
+  return given.dimensions() == 1 ? 1 : 0;
+}
+
+/// x1 of one state or of each of K; with `derivatives` also those by x, inputs, parameters, h, t. None: a function is
+/// missing.
+py::tuple fixed_step(const CompiledModel& model, const py::object& t_given, const py::object& h_given,
+                     const py::object& state, const py::object& inputs_given, const py::object& parameters,
+                     const py::object& mode, const std::string& method, bool derivatives) {
+  const auto given = [](const py::object& object) { return object.is_none() ? nullptr : object.ptr(); };
+  const bool calls = !inputs_given.is_none() && PyCallable_Check(inputs_given.ptr()) != 0;
+  const py::object inputs = calls ? inputs_given(t_given, state) : inputs_given;
+  const Numbers t(given(t_given), "t"), h(given(h_given), "h"), x(given(state), "x"), u(given(inputs), "inputs"),
+      p(given(parameters), "parameters");
+  const std::size_t N = model.states().size(), U = model.inputs().size(), P = model.parameters().size();
+  const bool many = x.dimensions() == 2;
+  const std::size_t K = many ? static_cast<std::size_t>(x.length(0)) : 1;
+  if (!x || x.dimensions() == 0 || static_cast<std::size_t>(x.length(many ? 1 : 0)) != N)
+    refuse_shape("x", x, "(" + std::to_string(N) + ",) or (K, " + std::to_string(N) + ")");
+  const std::size_t t_step = step_of_number("t", t, K, many), h_step = step_of_number("h", h, K, many);
+  const std::size_t u_step = step_of("inputs", u, U, K, many), p_step = step_of("parameters", p, P, K, many);
+  const std::vector<int> modes = modes_of(given(mode), model);
+  FixedStep step(model, method);
+  constexpr std::array shapes{ResultShape{Size::states},
+                              ResultShape{Size::states, Size::states},
+                              ResultShape{Size::states, Size::inputs},
+                              ResultShape{Size::states, Size::parameters},
+                              ResultShape{Size::states},
+                              ResultShape{Size::states}};
+  const std::array<bool, 6> wanted{true,
+                                   derivatives,
+                                   derivatives && (U == 0 || model.has("jac_u")),
+                                   derivatives && (P == 0 || model.has("jac_p")),
+                                   derivatives,
+                                   derivatives};
+  std::array<py::object, 6> results;
+  std::array<double*, 6> to{};
+  std::array<std::size_t, 6> sizes{};
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    results[i] = py::none();
+    if (!wanted[i]) continue;
+    results[i] = new_result(shapes[i], model, many, K);
+    to[i] = data_of(results[i]);
+    sizes[i] = value_of(shapes[i].rows, model) * value_of(shapes[i].columns, model);
+  }
+  // Without inputs or parameters there is nothing to compute.
+  const bool by_inputs = U > 0 && wanted[2], by_parameters = P > 0 && wanted[3];
+  int first = 0;
+  {
+    const py::gil_scoped_release released;
+    for (std::size_t k = 0; k < K && first != CompiledModel::not_compiled; ++k) {
+      Arguments at{t.data()[k * t_step], x.data() + k * N, p ? p.data() + k * p_step : nullptr,
+                   u ? u.data() + k * u_step : nullptr};
+      set_mode(at, modes);
+      const StepDerivatives by{to[1], by_parameters ? to[3] : nullptr, by_inputs ? to[2] : nullptr, to[5], to[4]};
+      const int code = step.derivatives(at, h.data()[k * h_step], to[0], by);
+      if (first == 0) first = code;
+      for (std::size_t i = 0; i < to.size(); ++i) {
+        if (code != 0) std::fill(to[i], to[i] + sizes[i], std::numeric_limits<double>::quiet_NaN());
+        to[i] += sizes[i];
+      }
+    }
+  }
+  if (first == CompiledModel::not_compiled || (first != 0 && !many)) refuse({"step", "jac", "", 1, {}, nullptr}, first);
+  return py::make_tuple(results[0], results[1], results[2], results[3], results[4], results[5]);
+}
+
 }  // namespace
 
 void add_compiled_model(py::module_& module) {
@@ -281,7 +354,9 @@ void add_compiled_model(py::module_& module) {
              return scene_values(call_library({}, [&](auto&) { return f.scene_values(replaced); }));
            })
       .def("_input_values", [](const CompiledModel& f, double t) { return array_of(f.input_values(t)); })
-      .def("_taylor", taylor);
+      .def("_taylor", taylor)
+      .def("_step", fixed_step)
+      .def_static("_step_methods", FixedStep::methods);
   add_methods(type, std::make_index_sequence<functions.size()>{});
 }
 

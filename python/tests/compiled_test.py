@@ -212,6 +212,54 @@ class CompiledModelTest(unittest.TestCase):
         end = self.model.run(t_end=h, rtol=1e-12, atol=1e-14).final
         np.testing.assert_allclose(np.polynomial.polynomial.polyval(h, series)[1], end["theta"], rtol=1e-12)
 
+    def test_steps_are_those_of_a_run_with_fixed_steps(self):
+        for method in ("rk4", "midpoint"):
+            rows = self.model.run(t_end=0.5, step=0.0625, every=0.0625, solver=method, error_estimate=False)
+            x = self.f.start
+            for k in range(8):
+                x = self.f.step(0.0625 * k, 0.0625, x, method=method)
+                expected = [rows[name][k + 1] for name in self.f.state_names]
+                np.testing.assert_allclose(x, expected, rtol=0, atol=1e-14)
+
+    def test_derivatives_of_steps_are_those_of_differences(self):
+        x, u, p, h, d = self.states(1)[0], np.array([0.4]), self.f.parameters, 0.1, 1e-5
+        for method in self.f.step_methods():
+            step = self.f.step_jac(0.0, h, x, u, p, method=method)
+            np.testing.assert_array_equal(step.x1, self.f.step(0.0, h, x, u, p, method=method))
+            for J, place in ((step.A, 2), (step.B, 3), (step.P, 4)):
+                arguments = [0.0, h, x, u, p]
+                for j in range(J.shape[1]):
+                    ends = []
+                    for by in (d, -d):
+                        moved = [np.copy(a) for a in arguments]
+                        moved[place][j] += by
+                        ends.append(self.f.step(*moved, method=method))
+                    np.testing.assert_allclose(J[:, j], (ends[0] - ends[1]) / (2 * d), rtol=1e-7, atol=1e-8)
+            ends = [self.f.step(0.0, h + by, x, u, p, method=method) for by in (d, -d)]
+            np.testing.assert_allclose(step.h, (ends[0] - ends[1]) / (2 * d), rtol=1e-7, atol=1e-8)
+            np.testing.assert_array_equal(step.t, np.zeros(4))
+
+    def test_steps_take_many_states_and_refuse_what_is_missing(self):
+        X, U = self.states(5), np.linspace(-1, 1, 5)[:, None]
+        h = np.linspace(0.01, 0.05, 5)
+        many = self.f.step_jac(0.0, h, X, U)
+        self.assertEqual([part.shape for part in many], [(5, 4), (5, 4, 4), (5, 4, 1), (5, 4, 5), (5, 4), (5, 4)])
+        one = self.f.step_jac(0.0, h[3], X[3], U[3])
+        for part, expected in zip(many, one):
+            np.testing.assert_array_equal(part[3], expected)
+        np.testing.assert_array_equal(self.f.step(0.0, h, X, lambda t, x: U)[3], one.x1)
+        bare = self.model.compile(functions=["jac"])
+        step = bare.step_jac(0.0, 0.1, X[0])
+        self.assertIsNone(step.B)
+        self.assertIsNone(step.P)
+        for arguments, name in (((0.0, [0.1, 0.2], X), "h"), (([0.0], 0.1, X[0]), "t"), ((0.0, 0.1, X[0][:3]), "x")):
+            with self.assertRaisesRegex(eomgen.Error, f"error: {name} has the shape"):
+                bare.step(*arguments)
+        with self.assertRaisesRegex(eomgen.Error, "choose one of rk4"):
+            bare.step(0.0, 0.1, X[0], method="euler")
+        with self.assertRaisesRegex(eomgen.Error, "'jac' was not compiled"):
+            self.model.compile(functions=["mass"]).step_jac(0.0, 0.1, X[0])
+
     def test_inputs_may_be_a_function_of_time_and_state(self):
         x = self.states(1)[0]
         feedback = lambda t, x: [t - 2 * x[..., 1]]
