@@ -2,9 +2,11 @@
 """The functions of a CompiledModel, against formulas written by hand, differences and SciPy."""
 
 import concurrent.futures
+import json
 import math
 import os
 import pickle
+import subprocess
 import unittest
 
 import eomgen
@@ -238,6 +240,20 @@ class CompiledModelTest(unittest.TestCase):
             ends = [self.f.step(0.0, h + by, x, u, p, method=method) for by in (d, -d)]
             np.testing.assert_allclose(step.h, (ends[0] - ends[1]) / (2 * d), rtol=1e-7, atol=1e-8)
             np.testing.assert_array_equal(step.t, np.zeros(4))
+
+    def test_chained_derivatives_of_steps_are_the_sensitivities_of_a_run(self):
+        command = [os.environ["EOMGEN"], "run", f"{SOURCE}/models/cart_pendulum.toml", "--t-end", "1", "--json"]
+        command += ["--rtol", "1e-11", "--atol", "1e-13", "--sensitivity", "m,theta"]
+        expected = json.loads(subprocess.run(command, capture_output=True, check=True).stdout)["sensitivities"]["values"]
+        x, h, place = self.f.start, 0.02, self.f.parameter_names.index("m")
+        S = np.column_stack([np.zeros(4), np.eye(4)[self.f.state_names.index("theta")]])
+        for k in range(50):
+            step = self.f.step_jac(h * k, h, x, method="dop853")
+            x, S = step.x1, step.A @ S
+            S[:, 0] += step.P[:, place]
+        for column, name in enumerate(("m", "theta")):
+            values = [expected[name][state] for state in self.f.state_names]
+            np.testing.assert_allclose(S[:, column], values, rtol=1e-10)
 
     def test_steps_take_many_states_and_refuse_what_is_missing(self):
         X, U = self.states(5), np.linspace(-1, 1, 5)[:, None]
