@@ -16,9 +16,9 @@ namespace {
 
 /// A particle of unit mass on a rough plane: rows are the normal and the tangents; q are accelerations without contact.
 FrictionProblem particle(const Eigen::VectorXd& q, double mu) {
-  FrictionProblem problem{Eigen::MatrixXd::Identity(q.size(), q.size()), q, {Kind::closes}, {{{}, 0, 1, 0, mu}}};
+  FrictionProblem problem{Eigen::MatrixXd::Identity(q.size(), q.size()), q, {Kind::unilateral}, {{{}, 0, 1, 0, mu}}};
   for (Eigen::Index a = 1; a < q.size(); ++a) {
-    problem.kinds.push_back(Kind::rubs);
+    problem.kinds.push_back(Kind::friction);
     problem.laws[0].tangents.push_back(a);
   }
   return problem;
@@ -61,7 +61,7 @@ TEST_CASE("friction problem: three balls that meet at the same time") {
   balls.G.resize(2, 2);
   balls.G << 2, -1, -1, 2;
   balls.q = Eigen::Vector2d(2 * -1.0, 0);
-  balls.kinds = {Kind::closes, Kind::closes};
+  balls.kinds = {Kind::unilateral, Kind::unilateral};
   const FrictionForces impulses = solve_friction_problem(balls);
   REQUIRE(impulses.found);
   CHECK(impulses.force(0) == doctest::Approx(4.0 / 3));
@@ -73,7 +73,7 @@ TEST_CASE("friction problem: held rows are eliminated, and friction may hang on 
   FrictionProblem bead;
   bead.G = Eigen::Matrix2d::Identity();
   bead.q = Eigen::Vector2d(-3, 2);
-  bead.kinds = {Kind::holds, Kind::rubs};
+  bead.kinds = {Kind::bilateral, Kind::friction};
   bead.laws = {{{1}, 0, 1, 0, 0.5}};
   const FrictionForces forces = solve_friction_problem(bead);
   REQUIRE(forces.found);
@@ -92,7 +92,7 @@ TEST_CASE("friction problem: the residual is that of the laws, not of the method
   slides.velocity = problem.G * slides.force + problem.q;
   CHECK(eom::contacts::complementarity_residual(problem, slides) > 1e-3);
   // A row that separates without a force, and one that is pressed together.
-  FrictionProblem gaps{Eigen::Matrix2d::Identity(), Eigen::Vector2d(1, -2), {Kind::closes, Kind::closes}, {}};
+  FrictionProblem gaps{Eigen::Matrix2d::Identity(), Eigen::Vector2d(1, -2), {Kind::unilateral, Kind::unilateral}, {}};
   FrictionForces forces = solve_friction_problem(gaps);
   CHECK(forces.residual < 1e-15);  // the softness of the rows, 1e-13, does not stay
   forces.force(0) = 0.1;           // holds what separates
@@ -130,7 +130,7 @@ TEST_CASE("friction problem: what sticks is at rest to rounding, also where the 
   Eigen::MatrixXd legs(4, 3);
   legs << 1, 1, 1, 1, 1, -1, 1, -1, 1, 1, -1, -1;
   FrictionProblem table{legs * legs.transpose(), Eigen::VectorXd::Constant(4, -8), {}, {}};
-  table.kinds.assign(4, Kind::closes);
+  table.kinds.assign(4, Kind::unilateral);
   const FrictionForces shares = solve_friction_problem(table);
   REQUIRE(shares.found);
   CHECK(shares.residual < 1e-14);

@@ -126,7 +126,7 @@ class ContactForces {
     return {w[0] / speed, w[1] / speed};
   }
   /// Whether the friction of a contact follows from its normal force and its slip.
-  bool rubs(std::size_t j) const {
+  bool has_friction(std::size_t j) const {
     return is_closed(j) && !contact(j).slip.empty() && !(contact(j).sticks && states_[j].mode == Mode::closed);
   }
 
@@ -140,7 +140,7 @@ class ContactForces {
   Pattern normal_pattern(std::size_t j, bool with_friction) const {
     const Description& at = contact(j);
     Pattern pattern{j, -1, {{at.force_input, 1.0}}};
-    if (!with_friction || !rubs(j)) return pattern;
+    if (!with_friction || !has_friction(j)) return pattern;
     const std::array<double, 2> along = direction(j);
     const double strength = c_[at.dynamic_coefficient] * c_[at.normal_scale] * states_[j].normal_sign;
     for (std::size_t a = 0; a < at.slip.size(); ++a)
@@ -156,7 +156,7 @@ class ContactForces {
   int evaluate_free(double t, const double* x, double* u) {
     for (std::size_t j = 0; j < set_.contacts.size(); ++j) {
       const Description& at = contact(j);
-      if (at.has_constraint() || !rubs(j)) continue;
+      if (at.has_constraint() || !has_friction(j)) continue;
       const std::array<double, 2> along = direction(j);
       const double force = c_[at.dynamic_coefficient] * std::abs(c_[at.given_normal]);
       for (std::size_t a = 0; a < at.slip.size(); ++a) u[at.friction_input + a] = -force * along[a];
@@ -244,7 +244,8 @@ class ContactForces {
         push(u, pattern, forces.x(k));
         if (pattern.component < 0) {
           lambda_[pattern.contact] = forces.x(k);
-          if (rubs(pattern.contact)) margins_[pattern.contact] = W(k, k), signs_of_margins(pattern.contact, right(k));
+          if (has_friction(pattern.contact))
+            margins_[pattern.contact] = W(k, k), signs_of_margins(pattern.contact, right(k));
         }
       }
     }
@@ -269,7 +270,7 @@ class ContactForces {
     const Description& at = contact(j);
     return at.has_constraint() ? c_[at.normal_scale] * lambda_[j] : std::abs(c_[at.given_normal]);
   }
-  /// The largest sum of terms of the acceleration of a closed contact since forget().
+  /// The largest sum of terms of the acceleration of a closed contact since reset().
   double largest_acceleration() const { return largest_acceleration_; }
   /// The size of the forces that balance the terms of the accelerations of a contact: the scale of their rounding.
   double force_size(std::size_t j) const { return force_size_[j]; }
@@ -281,7 +282,7 @@ class ContactForces {
   /// Whether the forces of some state were not unique.
   bool undetermined() const { return undetermined_; }
   /// Begins anew with undetermined() and largest_acceleration().
-  void forget() { undetermined_ = false, largest_acceleration_ = 0; }
+  void reset() { undetermined_ = false, largest_acceleration_ = 0; }
 
   static constexpr int code_not_finite = 5;  // as in the C ABI
 

@@ -40,7 +40,7 @@ class ContactProblem {
     else
       law.normal_sign = forces_.states()[j].normal_sign * forces_.value(at.normal_scale);
     for (std::size_t a = 0; a < at.slip.size(); ++a)
-      law.tangents.push_back(add_row(j, at.slip[a], forces_.tangent_pattern(j, a), Kind::rubs));
+      law.tangents.push_back(add_row(j, at.slip[a], forces_.tangent_pattern(j, a), Kind::friction));
     problem_.laws.push_back(std::move(law));
     contact_of_law_.push_back(j);
   }

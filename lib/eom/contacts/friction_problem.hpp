@@ -34,7 +34,11 @@ struct FrictionLaw {
 
 /// A linear complementarity problem with friction: velocities = G force + q, one kind per row, and the laws.
 struct FrictionProblem {
-  enum class Kind { holds, closes, rubs };  // the velocity is 0; it is >= 0 and so is the force; a tangent of a law
+  enum class Kind {
+    bilateral,
+    unilateral,
+    friction
+  };  // the velocity is 0; it is >= 0 and so is the force; a tangent of a law
   Eigen::MatrixXd G;
   Eigen::VectorXd q;
   std::vector<Kind> kinds;
@@ -62,9 +66,9 @@ inline double complementarity_residual(const FrictionProblem& p, const FrictionF
   for (Eigen::Index i = 0; i < p.q.size(); ++i) {
     const FrictionProblem::Kind kind = p.kinds[static_cast<std::size_t>(i)];
     const double response = std::abs(p.G(i, i));
-    if (kind == FrictionProblem::Kind::rubs || !(response > 0)) continue;
+    if (kind == FrictionProblem::Kind::friction || !(response > 0)) continue;
     const double change = step(i, response);
-    const bool held = kind == FrictionProblem::Kind::holds;
+    const bool held = kind == FrictionProblem::Kind::bilateral;
     largest = std::max(largest, std::abs(held ? change : std::min(forces.force(i), change)));
   }
   for (const FrictionLaw& law : p.laws) {
@@ -93,7 +97,7 @@ class Solver {
 
   explicit Solver(const FrictionProblem& problem) : p_(problem) {
     for (Index i = 0; i < p_.q.size(); ++i)
-      (p_.kinds[static_cast<std::size_t>(i)] == FrictionProblem::Kind::holds ? held_ : free_).push_back(i);
+      (p_.kinds[static_cast<std::size_t>(i)] == FrictionProblem::Kind::bilateral ? held_ : free_).push_back(i);
     eliminate_held();
   }
 
@@ -172,7 +176,7 @@ class Solver {
   FrictionForces by_pivoting(double softness, bool scaled) const {
     std::vector<Column> columns;
     for (const Index row : free_)
-      if (p_.kinds[static_cast<std::size_t>(row)] == FrictionProblem::Kind::closes)
+      if (p_.kinds[static_cast<std::size_t>(row)] == FrictionProblem::Kind::unilateral)
         columns.push_back({place(row), -1, {}});
     for (int l = 0; l < static_cast<int>(p_.laws.size()); ++l) {
       const std::size_t senses = p_.laws[static_cast<std::size_t>(l)].tangents.size() == 1 ? 2 : polygon;
@@ -260,7 +264,7 @@ class Solver {
     for (int round = 0; round < most; ++round) {
       double moved = 0;
       for (Index i = 0; i < f; ++i) {
-        if (p_.kinds[static_cast<std::size_t>(free_at(i))] != FrictionProblem::Kind::closes || !(G_(i, i) > 0))
+        if (p_.kinds[static_cast<std::size_t>(free_at(i))] != FrictionProblem::Kind::unilateral || !(G_(i, i) > 0))
           continue;
         moved = std::max(moved, set(i, std::max(0.0, y(i) - velocity(i) / G_(i, i))));
       }

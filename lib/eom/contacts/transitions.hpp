@@ -111,7 +111,7 @@ class Transitions {
           at.unilateral ? std::find(acting.begin(), acting.end(), j) != acting.end() : at.has_constraint();
       if (!acts) continue;
       const Index normal = rows.add_row(j, at.normal, forces_.normal_pattern(j, false),
-                                        at.unilateral && !rest ? Kind::closes : Kind::holds);
+                                        at.unilateral && !rest ? Kind::unilateral : Kind::bilateral);
       if (law != ImpactLaw::newton && at.sticks && !rest)
         rows.add_friction(j, normal, forces_.value(at.dynamic_coefficient));
     }
@@ -121,7 +121,8 @@ class Transitions {
     Vector approach(count), restitution(count);
     for (Index i = 0; i < count; ++i) {
       approach(i) = speed(rows.row(i), x);
-      const bool bounces = rows.kind(i) == Kind::closes && !plastic[rows.contact(i)] && approach(i) < -tolerances.speed;
+      const bool bounces =
+          rows.kind(i) == Kind::unilateral && !plastic[rows.contact(i)] && approach(i) < -tolerances.speed;
       restitution(i) = bounces ? forces_.value(forces_.contact(rows.contact(i)).restitution) : 0;
       const bool of_speeds = law != ImpactLaw::poisson;
       problem.q(i) = approach(i) * (of_speeds ? 1 + restitution(i) : 1);
@@ -140,7 +141,7 @@ class Transitions {
     for (Index k = 0; k < count; ++k) Eigen::Map<Vector>(x + n_, static_cast<Index>(n_)) += total(k) * rows.response(k);
     for (Index i = 0; i < count; ++i) {
       const std::size_t j = rows.contact(i);
-      if (rows.kind(i) != Kind::rubs && forces_.contact(j).unilateral && approach(i) < -tolerances.speed &&
+      if (rows.kind(i) != Kind::friction && forces_.contact(j).unilateral && approach(i) < -tolerances.speed &&
           total(i) > 0 && std::find(hit.begin(), hit.end(), j) == hit.end())
         hit.push_back(j);
     }
@@ -188,8 +189,8 @@ class Transitions {
       const Description& at = forces_.contact(j);
       Index normal = -1;
       if (at.has_constraint())
-        normal =
-            rows.add_row(j, at.normal, forces_.normal_pattern(j, true), at.unilateral ? Kind::closes : Kind::holds);
+        normal = rows.add_row(j, at.normal, forces_.normal_pattern(j, true),
+                              at.unilateral ? Kind::unilateral : Kind::bilateral);
       if (forces_.is_sticking(j))
         rows.add_friction(j, normal, forces_.value(broken[j] ? at.dynamic_coefficient : at.static_coefficient));
     }
@@ -210,9 +211,10 @@ class Transitions {
       const std::size_t j = rows.contact(i);
       // One of the two is 0, but for rounding.
       const bool separates = !(found.force(i) > 0) || found.velocity(i) > problem.G(i, i) * found.force(i);
-      if (rows.kind(i) == Kind::closes && separates && (found.velocity(i) > least || (hint.parts && hint.contact == j)))
+      if (rows.kind(i) == Kind::unilateral && separates &&
+          (found.velocity(i) > least || (hint.parts && hint.contact == j)))
         forces_.states()[j].mode = Mode::open;
-      if (rows.kind(i) == Kind::holds && found.force(i) != 0)
+      if (rows.kind(i) == Kind::bilateral && found.force(i) != 0)
         forces_.states()[j].normal_sign = found.force(i) < 0 ? -1 : 1;
     }
     const std::vector<std::size_t>& law_of = rows.contact_of_law();
@@ -251,7 +253,7 @@ class Transitions {
     std::size_t a = 0;
     for (Index i = 0; i < q.size(); ++i) {
       if (rows.contact(i) != hint.contact) continue;
-      if (rows.kind(i) == Kind::rubs) {
+      if (rows.kind(i) == Kind::friction) {
         const std::array<double, 2>& phi = friction_before_;
         const double length = std::hypot(phi[0], phi[1]);
         if (hint.slips && length > 0) q(i) -= announced * largest * phi[a] / length;

@@ -62,7 +62,7 @@ class SolvedContacts {
     end_.reset();
     changes_.clear();
     chatter_.reset();
-    forces_.forget();
+    forces_.reset();
     transitions_.start();
     thresholds_.start();
     std::vector<std::size_t> touching;
@@ -112,7 +112,7 @@ class SolvedContacts {
       if (at.has_constraint()) f[0] = bound;
       if (!forces_.is_closed(j) || at.slip.empty()) continue;
       if (at.sticks) f[1] = bound;
-      if (forces_.rubs(j) && at.has_constraint()) f[2] = bound;
+      if (forces_.has_friction(j) && at.has_constraint()) f[2] = bound;
     }
   }
 
