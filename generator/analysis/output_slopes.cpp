@@ -18,12 +18,13 @@ using linear::Precise;
 using symbolic::Symbol;
 using symbolic::SymbolKind;
 
-/// The symbols on which an output may depend: z, t, the inputs, then the accelerations and multipliers, which are
-/// functions of the others.
+/// The symbols on which an output may depend: z, t, the inputs, then the accelerations and the forces of constraints
+/// and contacts, which are functions of the others.
 struct Directions {
   std::vector<Symbol> symbols;
   std::size_t state = 0;   // count of z with t
   std::size_t inputs = 0;  // count
+  std::vector<Symbol> forces;
 };
 
 Directions directions_of(const SteadyProblem& p) {
@@ -34,7 +35,8 @@ Directions directions_of(const SteadyProblem& p) {
   result.inputs = p.flow->inputs();
   for (std::uint32_t i = 0; i < result.inputs; ++i) result.symbols.push_back({SymbolKind::input, i, 0});
   for (const std::uint32_t i : p.system().free) result.symbols.push_back({SymbolKind::coordinate, i, 2});
-  for (const std::uint32_t k : p.system().active) result.symbols.push_back({SymbolKind::multiplier, k, 0});
+  result.forces = p.flow->forces();
+  result.symbols.insert(result.symbols.end(), result.forces.begin(), result.forces.end());
   return result;
 }
 
@@ -76,6 +78,7 @@ class Slopes {
     const linear::ValueAndJacobian<Precise> partial =
         linear::Tape(*p_.derived->mechanics.dag, {output.value}, directions_.symbols)
             .at<Precise>([this](const Symbol& symbol) { return value_of(symbol); });
+    require_determined(partial.jacobian);
     Row row{partial.value[0], std::vector<Precise>(columns()), {}};
     for (std::size_t d = 0; d < directions_.state; ++d) {
       const Precise slope = total(partial.jacobian, d, at_.field.jacobian, d);
@@ -96,9 +99,22 @@ class Slopes {
         throw std::domain_error("its value or a slope is above the range of binary64");
     }
   }
+  /// Throws std::domain_error if the output depends on forces that the motion leaves undetermined.
+  void require_determined(const Matrix<Precise>& partial) const {
+    const Matrix<Precise>& open = at_.field.undetermined;
+    const std::size_t forces = directions_.state + directions_.inputs + n_;
+    for (std::size_t k = 0; k < open.cols; ++k) {
+      Precise sum(0);
+      for (std::size_t m = 0; m < open.rows; ++m) sum = sum + partial(0, forces + m) * open(m, k);
+      if (linear::magnitude(sum) > linear::tiny<Precise>(40))
+        throw std::domain_error("the motion does not determine this force");
+    }
+  }
   Precise value_of(const Symbol& symbol) const {
     const system::EquationSystem& system = p_.system();
-    if (symbol.kind == SymbolKind::multiplier) return at_.field.multipliers(place_of(system.active, symbol.index), 0);
+    const auto force = std::find(directions_.forces.begin(), directions_.forces.end(), symbol);
+    if (force != directions_.forces.end())
+      return at_.field.forces(static_cast<std::size_t>(force - directions_.forces.begin()), 0);
     if (symbol.kind == SymbolKind::coordinate && symbol.order == 2)
       return at_.field.X(n_ + place_of(system.free, symbol.index), 0);
     return of_state_(symbol);
@@ -107,11 +123,11 @@ class Slopes {
   /// The total derivative by an entry of z, or by an input: accelerations and multipliers are functions of them.
   Precise total(const Matrix<Precise>& partial, std::size_t direction, const Matrix<Precise>& rates,
                 std::size_t column) const {
-    const std::size_t accelerations = directions_.state + directions_.inputs, multipliers = accelerations + n_;
+    const std::size_t accelerations = directions_.state + directions_.inputs, forces = accelerations + n_;
     Precise sum = partial(0, direction);
     for (std::size_t i = 0; i < n_; ++i) sum = sum + partial(0, accelerations + i) * rates(n_ + i, column);
-    for (std::size_t m = 0; m < p_.system().active.size(); ++m)
-      sum = sum + partial(0, multipliers + m) * at_.field.multiplier_jacobian(m, direction);
+    for (std::size_t m = 0; m < directions_.forces.size(); ++m)
+      sum = sum + partial(0, forces + m) * at_.field.force_jacobian(m, direction);
     return sum;
   }
 

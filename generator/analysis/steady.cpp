@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <span>
 
+#include "analysis/held_modes.hpp"
 #include "derive/imposition.hpp"
 #include "model/open_contacts.hpp"
 #include "numeric/numbers.hpp"
@@ -26,23 +29,18 @@ using pipeline::SimulationRequest;
 
 constexpr int neighbour_count = 2;
 
-[[noreturn]] void refuse_contact(const std::string& command, const model::Model& model, const std::string& name,
-                                 Contacts allowed) {
-  SourceLocation where{model.file, 0, 0, 1, ""};
-  for (const model::Constraint& c : model.constraints) {
-    if (c.name == name) where = model.where(c.span);
-  }
-  for (const model::Force& f : model.forces) {
-    if (f.name == name) where = model.where(f.span);
-  }
-  throw Error(
-      command, where,
-      fmt::format("'{}' sticks, slides or opens, and each mode has equations of its own, so there is no linearisation "
-                  "across modes",
-                  name),
-      fmt::format("linearise a copy of the model without the friction (or with the contact held) where it stays in one "
-                  "mode{}",
-                  allowed == Contacts::open ? ", or a state at which all contacts are open" : ""));
+[[noreturn]] void refuse_contact(const std::string& command, const model::Model& model,
+                                 const mechanics::Contact& contact, Contacts allowed) {
+  throw Error(command, location_of_contact(model, contact.name),
+              contact.width ? fmt::format("'{}' has friction that depends on its normal force, and a search of states "
+                                          "would have to keep the sign of that force",
+                                          contact.name)
+                            : fmt::format("'{}' sticks, slides or opens, and each mode has equations of its own, so "
+                                          "there is no search across modes",
+                                          contact.name),
+              fmt::format("linearize takes a state in one mode; or take a copy of the model without the friction (or "
+                          "with the contact held) where it stays in one mode{}",
+                          allowed == Contacts::none ? "" : ", or a state at which all contacts are open"));
 }
 
 /// Rejects a motion that the constraints determine.
@@ -84,9 +82,10 @@ std::string certified(DerivedModel& derived, std::uint64_t seed) {
   return certificate.summary();
 }
 
-/// Coordinates, rates and states of first order at the end of a run, by indices of the model.
+/// Coordinates, rates and states of first order at the end of a run, by indices of the model; modes by name.
 struct Reached {
   std::vector<double> q, qdot, z;
+  std::map<std::string, double> modes = {};
 };
 
 Reached run_until(const std::string& command, SimulationRequest request, double t, const run::Scene& scene) {
@@ -102,19 +101,36 @@ Reached run_until(const std::string& command, SimulationRequest request, double 
         if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
       }
     }
+    for (const mechanics::Contact& contact : derived.mechanics.contacts) names.push_back("mode." + contact.name);
     return names;
   };
   std::optional<work::DeferInterrupt> interrupt;
   request.ready = [&interrupt] { interrupt.emplace(); };
   request.interrupt = &work::stop_flag();
+  std::vector<std::string> columns;
+  std::vector<double> first;
+  std::atomic<bool> begun = false;
+  if (!(t > scene.t0)) {  // only the modes of the start: its row
+    request.overrides.t_end.reset();
+    request.interrupt = &begun;
+    request.begin = [&](const DerivedModel&, const run::Scene&, const std::vector<std::string>& names) {
+      columns = names;
+    };
+    request.row = [&](double, std::span<const double> values) {
+      if (first.empty()) first.assign(values.begin(), values.end());
+      begun = true;
+    };
+  }
   const Simulation run = pipeline::simulate(request);
-  if (run.result.outcome != eom::Outcome::done) {
+  if (run.result.outcome != eom::Outcome::done && t > scene.t0) {
     throw Error(
         command, {},
         fmt::format("the run ends at t = {} with '{}', before t = {}", run.result.t, eom::name(run.result.outcome), t),
         fmt::format("give --at a time between {} and {}", scene.t0, run.result.t), ErrorKind::numerical);
   }
-  const auto value = [&run](const std::string& name) {
+  const auto value = [&](const std::string& name) {
+    const auto column = std::find(columns.begin(), columns.end(), name);
+    if (column != columns.end() && !first.empty()) return first[static_cast<std::size_t>(column - columns.begin())];
     for (const auto& [key, number] : run.result.final) {
       if (key == name) return number;
     }
@@ -126,6 +142,14 @@ Reached run_until(const std::string& command, SimulationRequest request, double 
     reached.qdot.push_back(value(c.name + "_dot"));
   }
   for (const model::State& state : run.derived->model.states) reached.z.push_back(value(state.name));
+  for (const mechanics::Contact& contact : run.derived->mechanics.contacts)
+    reached.modes[contact.name] = value("mode." + contact.name);
+  if (!(t > scene.t0) && first.empty()) {
+    throw Error(command, run.derived->model.where(run.derived->model.scene(scene.name).span),
+                fmt::format("the contacts have no mode at this state: the run ends at its start with '{}'",
+                            eom::name(run.result.outcome)),
+                "take another start, or --at a later time", ErrorKind::numerical);
+  }
   return reached;
 }
 
@@ -227,8 +251,8 @@ SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const m
   SteadyProblem p;
   p.derived = pipeline::derive_model(model, ApproachChoice::two);
   for (const mechanics::Contact& contact : p.derived->mechanics.contacts) {
-    if (contacts == Contacts::none || !contact.unilateral)
-      refuse_contact(command, p.derived->model, contact.name, contacts);
+    if (contacts == Contacts::none || (contacts == Contacts::open && !contact.unilateral))
+      refuse_contact(command, p.derived->model, contact, contacts);
   }
   p.scene = run::resolve_scene(p.derived->mechanics, p.system(), p.derived->model.scene(scene), overrides);
   p.t = at.value_or(p.scene.t0);
@@ -237,21 +261,33 @@ SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const m
     throw Error(command, {}, fmt::format("t = {} lies before the scene's start at t = {}", p.t, p.scene.t0),
                 "give --at a later time, or leave it out for the start");
   }
-  if (p.t > p.scene.t0) {
+  const std::vector<mechanics::Contact> all = p.derived->mechanics.contacts;
+  const auto opens = [&](const mechanics::Contact& contact) { return is_open(p, contact, state); };
+  // A start at which some contact is closed: a run of no length decides its mode.
+  const bool is_start = !(p.t > p.scene.t0);
+  if (!is_start || (contacts == Contacts::held && !std::all_of(all.begin(), all.end(), opens))) {
     SimulationRequest request;
     request.model = model;
     request.scene = scene;
     request.overrides = overrides;
     request.seed = seed;
-    state = run_until(command, std::move(request), p.t, p.scene);
+    Reached reached = run_until(command, std::move(request), p.t, p.scene);
+    if (is_start)
+      state.modes = std::move(reached.modes);
+    else
+      state = std::move(reached);
   }
-  if (!p.derived->mechanics.contacts.empty()) {
-    for (const mechanics::Contact& contact : p.derived->mechanics.contacts) {
-      if (!is_open(p, contact, state)) refuse_contact(command, p.derived->model, contact.name, contacts);
-      p.open_contacts.push_back(contact.name);
-    }
+  for (const mechanics::Contact& contact : all) {
+    const bool is_apart = opens(contact);
+    if (contacts == Contacts::open && !is_apart) refuse_contact(command, p.derived->model, contact, contacts);
+    const auto mode = state.modes.find(contact.name);
+    const bool held = contacts == Contacts::held && mode != state.modes.end() && mode->second < 1.5;
+    if (!held && !is_apart) refuse_border(command, p.derived->model, contact.name, "touches without a force");
+    if (!held) p.open_contacts.push_back(contact.name);
+  }
+  if (!p.open_contacts.empty()) {
     p.with_contacts = std::move(p.derived);
-    p.derived = pipeline::derive_model(model::without_unilateral_constraints(*model), ApproachChoice::two);
+    p.derived = pipeline::derive_model(model::without_open_contacts(*model, p.open_contacts), ApproachChoice::two);
     p.scene = run::resolve_scene(p.derived->mechanics, p.system(),
                                  with_known_outputs(*p.derived, scene, p.without_value), overrides);
   }
@@ -259,7 +295,8 @@ SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const m
   require_freedom(command, d);
   put_cheapest_first(d);
   p.certificate = certified(d, seed);
-  p.flow = std::make_unique<linear::Flow>(d.mechanics, p.system());
+  const std::vector<linear::HeldMode> modes = held_modes(d.mechanics, state.modes);
+  p.flow = flow_in_modes(command, p, modes);
   for (const auto* values : {&state.q, &state.qdot}) {
     for (const std::uint32_t i : p.system().free) p.z.push_back(linear::number<Precise>(numeric::exact((*values)[i])));
   }
@@ -278,6 +315,15 @@ SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const m
     throw Error(command, d.model.where(d.model.scene(scene).span),
                 fmt::format("an integral of the constraints has no value at this state: {}", error.what()),
                 "start elsewhere");
+  }
+  if (!modes.empty()) {
+    hold_contacts(command, p, modes);
+    require_inside_modes(command, p);
+  }
+  for (const mechanics::Contact& contact : all) {
+    const auto is_this = [&](const linear::HeldContact& held) { return held.name == contact.name; };
+    const auto held = std::find_if(p.flow->contacts().begin(), p.flow->contacts().end(), is_this);
+    p.modes.emplace_back(contact.name, held == p.flow->contacts().end() ? "open" : mode_name(*held));
   }
   return p;
 }

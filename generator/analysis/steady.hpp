@@ -23,17 +23,19 @@ struct SteadyProblem {
   double t = 0;
   std::string certificate;
   std::vector<std::string> open_contacts;  // unilateral constraints that are open at the state, and left out
-  std::shared_ptr<pipeline::DerivedModel> with_contacts;  // the model with them; null if there are none
-  std::vector<std::string> without_value;                 // outputs of the scene that belong to them
+  std::vector<std::pair<std::string, std::string>> modes;  // the name and the mode of each contact, also of open ones
+  std::shared_ptr<pipeline::DerivedModel> with_contacts;   // the model with them; null if there are none
+  std::vector<std::string> without_value;                  // outputs of the scene that belong to them
 
   const system::EquationSystem& system() const { return derived->candidates.front(); }
 };
 
-/// State of unilateral constraints for equations without a mode: absent, or open at the state.
-enum class Contacts { none, open };
+/// Contacts of a problem: none, all of them open at the state, or held in the mode of the state.
+enum class Contacts { none, open, held };
 
-/// Throws Error{stage `command`} if contacts make the equations depend on a mode, or if a derivation fails the check
-/// against the independent oracle. `at`: time in s at which an integrated motion gives the state.
+/// Throws Error{stage `command`} if contacts are not as `contacts` states, if the state lies on the border of two
+/// modes, or if a derivation fails the check against the independent oracle. `at`: time in s at which an integrated
+/// motion gives the state.
 SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const model::Model> model,
                              const std::string& scene, const run::Overrides& overrides, std::optional<double> at,
                              std::uint64_t seed, Contacts contacts);

@@ -32,7 +32,7 @@ Linearisation Model::linearise(const LineariseOptions& options, const CallContro
     run::Overrides overrides;
     overrides.values = exact_rationals(options.parameters);
     const analysis::SteadyProblem problem = analysis::steady_problem(
-        "linearize", read_, options.scene, overrides, options.time, options.seed, analysis::Contacts::open);
+        "linearize", read_, options.scene, overrides, options.time, options.seed, analysis::Contacts::held);
     Linearisation result;
     const linear::Linearisation l = analysis::linearise_at_state(problem, options.seed);
     result.kind = linear::name(l.kind);

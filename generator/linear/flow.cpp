@@ -57,9 +57,11 @@ std::vector<Symbol> state_symbols(const system::EquationSystem& s) {
 
 }  // namespace
 
-Flow::Flow(mechanics::Mechanics& m, const system::EquationSystem& s)
-    : system_(s), n_(s.free.size()), m_(s.active.size()), inputs_(m.model->inputs.size()) {
+Flow::Flow(mechanics::Mechanics& m, const system::EquationSystem& s, const std::vector<HeldMode>& modes)
+    : system_(s), n_(s.free.size()), m_(s.active.size()), held_(s.has_contacts()) {
   Dag& dag = *m.dag;
+  for (const model::Input& input : m.model->inputs)
+    inputs_ += input.source == model::Input::Source::contacts ? 0 : 1;  // these come last
   place_.assign(m.q.size(), 0);
   for (std::size_t i = 0; i < n_; ++i) place_[s.free[i]] = i;
   for (const char* suffix : {"", "_dot"}) {
@@ -77,28 +79,45 @@ Flow::Flow(mechanics::Mechanics& m, const system::EquationSystem& s)
   symbols_.assign(directions_.begin(), directions_.end() - 1);
   for (const Symbol& symbol : symbols_) entries_.push_back(dag.symbol(symbol));
   for (std::uint32_t i = 0; i < inputs_; ++i) directions_.push_back({SymbolKind::input, i, 0});
-  std::vector<Ref> roots = s.M;
-  for (const auto* list : {&s.f, &s.A, &s.gamma, &s.b}) roots.insert(roots.end(), list->begin(), list->end());
+  HeldEquations held;
+  if (held_) held = held_equations(m, s, modes);
+  contacts_ = std::move(held.contacts);
   for (std::size_t k = 0; k < m_; ++k) {
     if (s.holonomic[k]) holonomic_.push_back(k);
   }
-  for (const std::size_t k : holonomic_) roots.push_back(s.psi[k]);
+  std::vector<Ref> roots;
+  if (held_) {
+    roots = held.matrix;
+    roots.insert(roots.end(), held.constant.begin(), held.constant.end());
+    forces_ = std::move(held.forces);
+  } else {
+    roots = s.M;
+    for (const auto* list : {&s.f, &s.A, &s.gamma, &s.b}) roots.insert(roots.end(), list->begin(), list->end());
+    for (const std::size_t k : holonomic_) roots.push_back(s.psi[k]);
+    for (const std::uint32_t k : s.active) forces_.push_back({SymbolKind::multiplier, k, 0});
+  }
   roots.insert(roots.end(), rates.begin(), rates.end());
   for (const mechanics::ConstraintIntegral& integral : m.integrals) leaf_.push_back(integral.psi);
   for (const std::size_t k : holonomic_) phi_expressions_.push_back(s.psi[k]);
+  phi_expressions_.insert(phi_expressions_.end(), held.gaps.begin(), held.gaps.end());
   phi_expressions_.insert(phi_expressions_.end(), leaf_.begin(), leaf_.end());
+  position_constraints_ = phi_expressions_.size();
   for (std::size_t k = 0; k < m_; ++k) {
     Ref rate = s.b[k];
     for (std::size_t i = 0; i < n_; ++i) rate = dag.add(rate, dag.mul(s.A[k * n_ + i], m.qdot[s.free[i]]));
     phi_expressions_.push_back(rate);
   }
+  for (const auto* list : {&held.gap_rates, &held.slips})
+    phi_expressions_.insert(phi_expressions_.end(), list->begin(), list->end());
   const std::vector<Symbol> symbols = dag.symbols(roots);
   uses_integrals_ =
       std::any_of(symbols.begin(), symbols.end(), [](const Symbol& x) { return x.kind == SymbolKind::integral; });
   tape_ = std::make_unique<Tape>(dag, roots, directions_);
-  std::vector<Ref> of_constraints = s.A;
-  of_constraints.insert(of_constraints.end(), s.b.begin(), s.b.end());
-  for (const std::size_t k : holonomic_) of_constraints.push_back(s.psi[k]);
+  std::vector<Ref> of_constraints = held_ ? phi_expressions_ : s.A;
+  if (!held_) {
+    of_constraints.insert(of_constraints.end(), s.b.begin(), s.b.end());
+    for (const std::size_t k : holonomic_) of_constraints.push_back(s.psi[k]);
+  }
   constraint_tape_ = std::make_unique<Tape>(dag, of_constraints, directions_);
   leaf_tape_ = std::make_unique<Tape>(dag, leaf_, directions_);
 }
@@ -135,6 +154,11 @@ template <class T>
 Field<T> Flow::at(const State<T>& z, const Setting<T>& setting) const {
   const ValueAndJacobian<T> s = value_and_jacobian(*tape_, z, setting);
   Field<T> field;
+  if (held_) {
+    differentiate_held(s, z, field);
+    constrain_held(z, setting, field);
+    return field;
+  }
   differentiate(s, z, field);
   const std::size_t A0 = n_ * n_ + n_, b0 = A0 + m_ * n_ + m_;
   constrain(s, {A0, b0, b0 + m_}, z, setting, field);
@@ -144,6 +168,10 @@ Field<T> Flow::at(const State<T>& z, const Setting<T>& setting) const {
 template <class T>
 Field<T> Flow::constraints_at(const State<T>& z, const Setting<T>& setting) const {
   Field<T> field;
+  if (held_) {
+    constrain_held(z, setting, field);
+    return field;
+  }
   constrain(value_and_jacobian(*constraint_tape_, z, setting), {0, m_ * n_, m_ * n_ + m_}, z, setting, field);
   return field;
 }
@@ -190,31 +218,10 @@ void Flow::differentiate(const ValueAndJacobian<T>& s, const State<T>& z, Field<
     }
   }
   const Matrix<T> jacobian = solver.solve(rates);
-  const std::size_t N = entries(), rates0 = gamma0 + 2 * m_ + holonomic_.size();
-  field.X = Matrix<T>(N, 1);
-  field.jacobian = Matrix<T>(N, N + 1);
-  field.input_jacobian = Matrix<T>(N, inputs_);
-  for (std::size_t i = 0; i < n_; ++i) {
-    field.X(i, 0) = z[n_ + i];
-    field.X(n_ + i, 0) = y(i, 0);
-    field.jacobian(i, n_ + i) = T(1);
-    for (std::size_t d = 0; d < N + 1; ++d) field.jacobian(n_ + i, d) = jacobian(i, d);
-    for (std::size_t u = 0; u < inputs_; ++u) field.input_jacobian(n_ + i, u) = jacobian(i, N + 1 + u);
-  }
-  field.multipliers = Matrix<T>(m_, 1);
-  field.multiplier_jacobian = Matrix<T>(m_, count);
-  for (std::size_t k = 0; k < m_; ++k) {
-    field.multipliers(k, 0) = y(n_ + k, 0);
-    for (std::size_t d = 0; d < count; ++d) field.multiplier_jacobian(k, d) = jacobian(n_ + k, d);
-  }
-  const std::size_t first_order = eom::StateLayout{n_}.first_order_begin();
-  for (std::size_t k = 0; first_order + k < N; ++k) {
-    field.X(first_order + k, 0) = s.value[rates0 + k];
-    for (std::size_t d = 0; d < N + 1; ++d) field.jacobian(first_order + k, d) = s.jacobian(rates0 + k, d);
-    for (std::size_t u = 0; u < inputs_; ++u)
-      field.input_jacobian(first_order + k, u) = s.jacobian(rates0 + k, N + 1 + u);
-  }
+  fill(y, jacobian, z, field);
+  fill_first_order(s, gamma0 + 2 * m_ + holonomic_.size(), field);
   if constexpr (std::is_same_v<T, double>) {
+    const std::size_t N = entries();
     field.inertia_force = Matrix<T>(n_, 1);
     field.inertia_force_jacobian = Matrix<T>(n_, N + 1);
     for (std::size_t i = 0; i < n_; ++i) {
@@ -226,6 +233,91 @@ void Flow::differentiate(const ValueAndJacobian<T>& s, const State<T>& z, Field<
       }
     }
   }
+}
+
+/// Velocities, accelerations and forces: y = (accelerations, forces), with their derivatives.
+template <class T>
+void Flow::fill(const Matrix<T>& y, const Matrix<T>& jacobian, const State<T>& z, Field<T>& field) const {
+  const std::size_t N = entries(), count = directions_.size();
+  field.X = Matrix<T>(N, 1);
+  field.jacobian = Matrix<T>(N, N + 1);
+  field.input_jacobian = Matrix<T>(N, inputs_);
+  for (std::size_t i = 0; i < n_; ++i) {
+    field.X(i, 0) = z[n_ + i];
+    field.X(n_ + i, 0) = y(i, 0);
+    field.jacobian(i, n_ + i) = T(1);
+    for (std::size_t d = 0; d < N + 1; ++d) field.jacobian(n_ + i, d) = jacobian(i, d);
+    for (std::size_t u = 0; u < inputs_; ++u) field.input_jacobian(n_ + i, u) = jacobian(i, N + 1 + u);
+  }
+  field.forces = Matrix<T>(forces_.size(), 1);
+  field.force_jacobian = Matrix<T>(forces_.size(), count);
+  for (std::size_t k = 0; k < forces_.size(); ++k) {
+    field.forces(k, 0) = y(n_ + k, 0);
+    for (std::size_t d = 0; d < count; ++d) field.force_jacobian(k, d) = jacobian(n_ + k, d);
+  }
+}
+
+/// The states of first order: their rates begin at `rates` of s.
+template <class T>
+void Flow::fill_first_order(const ValueAndJacobian<T>& s, std::size_t rates, Field<T>& field) const {
+  const std::size_t N = entries(), first_order = eom::StateLayout{n_}.first_order_begin();
+  for (std::size_t k = 0; first_order + k < N; ++k) {
+    field.X(first_order + k, 0) = s.value[rates + k];
+    for (std::size_t d = 0; d < N + 1; ++d) field.jacobian(first_order + k, d) = s.jacobian(rates + k, d);
+    for (std::size_t u = 0; u < inputs_; ++u)
+      field.input_jacobian(first_order + k, u) = s.jacobian(rates + k, N + 1 + u);
+  }
+}
+
+// P y + c = 0, and along every direction d P y' = -c' - P' y.
+template <class T>
+void Flow::differentiate_held(const ValueAndJacobian<T>& s, const State<T>& z, Field<T>& field) const {
+  const std::size_t size = n_ + forces_.size(), c0 = size * size, count = directions_.size();
+  Matrix<T> P(size, size), right(size, 1), rates(size, count);
+  for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t j = 0; j < size; ++j) P(i, j) = s.value[i * size + j];
+    right(i, 0) = -s.value[c0 + i];
+  }
+  const Elimination<T> solver(P, singular<T>());
+  const Matrix<T> open = solver.null_space();
+  field.undetermined = Matrix<T>(forces_.size(), open.cols);
+  for (std::size_t k = 0; k < open.cols; ++k) {
+    for (std::size_t i = 0; i < n_; ++i)
+      require_domain(magnitude(open(i, k)) <= singular<T>(), "the accelerations are not determined");
+    for (std::size_t i = 0; i < forces_.size(); ++i) field.undetermined(i, k) = open(n_ + i, k);
+  }
+  const Matrix<T> y = solver.solve(right);
+  for (std::size_t d = 0; d < count; ++d) {
+    for (std::size_t i = 0; i < size; ++i) {
+      T sum = -s.jacobian(c0 + i, d);
+      for (std::size_t j = 0; j < size; ++j) subtract(sum, s.jacobian(i * size + j, d), y(j, 0));
+      rates(i, d) = sum;
+    }
+  }
+  const Matrix<T> jacobian = solver.solve(rates);
+  fill(y, jacobian, z, field);
+  fill_first_order(s, c0 + size, field);
+  if constexpr (std::is_same_v<T, double>) {  // the accelerations vanish where the forces of inertia do
+    field.inertia_force = Matrix<T>(n_, 1);
+    field.inertia_force_jacobian = Matrix<T>(n_, entries() + 1);
+    for (std::size_t i = 0; i < n_; ++i) {
+      field.inertia_force(i, 0) = y(i, 0);
+      for (std::size_t d = 0; d < entries() + 1; ++d) field.inertia_force_jacobian(i, d) = jacobian(i, d);
+    }
+  }
+}
+
+template <class T>
+void Flow::constrain_held(const State<T>& z, const Setting<T>& setting, Field<T>& field) const {
+  const ValueAndJacobian<T> s = value_and_jacobian(*constraint_tape_, z, setting);
+  const std::size_t rows = phi_expressions_.size(), leaf0 = position_constraints_ - leaf_.size();
+  field.phi = Matrix<T>(rows, 1);
+  field.phi_jacobian = Matrix<T>(rows, entries() + 1);
+  for (std::size_t k = 0; k < rows; ++k) {
+    field.phi(k, 0) = s.value[k];
+    for (std::size_t d = 0; d < entries() + 1; ++d) field.phi_jacobian(k, d) = s.jacobian(k, d);
+  }
+  for (std::size_t k = 0; k < leaf_.size(); ++k) field.phi(leaf0 + k, 0) = s.value[leaf0 + k] - setting.leaf.at(k);
 }
 
 template <class T>

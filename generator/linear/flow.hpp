@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The vector field of the equations of motion at a point and its Jacobian: (q, v, s) -> (v, a, s') with M a = f + A^T
 // lambda and A a + gamma = 0, differentiated with a and lambda as functions of the point, and the rates s' of the
-// declared states of first order. In: an EquationSystem without contacts.
+// declared states of first order. In: an EquationSystem, and the modes of its contacts.
 #pragma once
 
 #include <memory>
 #include <string>
 
+#include "linear/held_equations.hpp"
 #include "linear/tape.hpp"
 #include "mechanics/mechanics.hpp"
 #include "system/equation_system.hpp"
@@ -34,18 +35,23 @@ struct Field {
   Matrix<T> phi_jacobian;                 // by z
   Matrix<T> inertia_force = {};           // M a, n x 1; in binary64 only
   Matrix<T> inertia_force_jacobian = {};  // n x (N + 1)
-  Matrix<T> multipliers = {};             // of the active constraints, m x 1
-  Matrix<T> multiplier_jacobian = {};     // m x (N + 1 + inputs), by z, then the inputs
+  Matrix<T> forces = {};                  // of Flow::forces(), m x 1
+  Matrix<T> force_jacobian = {};          // m x (N + 1 + inputs), by z, then the inputs
+  Matrix<T> undetermined = {};            // m x k: changes of the forces that leave the motion as it is
 };
 
 class Flow {
  public:
-  Flow(mechanics::Mechanics& mechanics, const system::EquationSystem& system);
+  /// `modes`: of the contacts of the system, which are held.
+  Flow(mechanics::Mechanics& mechanics, const system::EquationSystem& system, const std::vector<HeldMode>& modes = {});
 
   std::size_t coordinates() const { return n_; }
   std::size_t entries() const { return symbols_.size(); }  // N: of z without t
   std::size_t inputs() const { return inputs_; }
-  std::size_t position_constraint_count() const { return holonomic_.size() + leaf_.size(); }
+  std::size_t position_constraint_count() const { return position_constraints_; }
+  /// Multipliers of the active constraints; with contacts also the components of their forces.
+  const std::vector<Symbol>& forces() const { return forces_; }
+  const std::vector<HeldContact>& contacts() const { return contacts_; }
   const std::vector<std::string>& names() const { return names_; }  // of z without t
   Ref entry(std::size_t place) const { return entries_[place]; }    // of z, as an expression
   const std::vector<Symbol>& symbols() const { return symbols_; }   // of z without t
@@ -78,6 +84,14 @@ class Flow {
  private:
   template <class T>
   void differentiate(const ValueAndJacobian<T>& s, const State<T>& z, Field<T>& field) const;
+  template <class T>
+  void differentiate_held(const ValueAndJacobian<T>& s, const State<T>& z, Field<T>& field) const;
+  template <class T>
+  void fill(const Matrix<T>& y, const Matrix<T>& jacobian, const State<T>& z, Field<T>& field) const;
+  template <class T>
+  void fill_first_order(const ValueAndJacobian<T>& s, std::size_t rates, Field<T>& field) const;
+  template <class T>
+  void constrain_held(const State<T>& z, const Setting<T>& setting, Field<T>& field) const;
   struct Places {
     std::size_t A, b, psi;
   };
@@ -86,8 +100,12 @@ class Flow {
                  Field<T>& field) const;
 
   const system::EquationSystem& system_;
-  std::size_t n_, m_, inputs_;
+  std::size_t n_, m_, inputs_ = 0;
   std::vector<std::size_t> holonomic_;  // of the active constraints
+  std::size_t position_constraints_ = 0;
+  bool held_ = false;  // the system has contacts
+  std::vector<HeldContact> contacts_;
+  std::vector<Symbol> forces_;
   std::vector<Ref> leaf_;
   std::vector<Ref> phi_expressions_;
   std::vector<std::string> names_;

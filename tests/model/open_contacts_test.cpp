@@ -38,10 +38,12 @@ when = "reaction.hinge.1 - 5"
 )toml",
                                                    "hinged");
   REQUIRE(read.constraints.size() >= 2);
-  const std::shared_ptr<const model::Model> open = model::without_unilateral_constraints(read);
+  const std::shared_ptr<const model::Model> open = model::without_open_contacts(read, {"floor"});
   CHECK(open->constraints.size() == read.constraints.size() - 1);
   CHECK(std::none_of(open->constraints.begin(), open->constraints.end(),
                      [](const model::Constraint& c) { return c.unilateral; }));
+  CHECK(model::without_open_contacts(read, {})->constraints.size() == read.constraints.size());
+  CHECK(model::without_open_contacts(read, {"hinge"})->constraints.size() == read.constraints.size());
   REQUIRE(open->joints.size() == 1);
   CHECK(open->constraints[open->joints[0].constraint].name == "hinge");
   CHECK(open->content_hash.empty());

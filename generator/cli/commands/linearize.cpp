@@ -97,6 +97,8 @@ Json left_out(const analysis::OutputSlopes& outputs, const std::vector<std::stri
 Json to_json(const Answer& a) {
   Json eigenvalues = Json::array(), point = Json::object(), moved = Json::object();
   for (const linear::Eigenvalue& e : a.l.spectrum.values) eigenvalues.push_back(eigenvalue_json(e));
+  Json modes = Json::object();
+  for (const auto& [contact, mode] : a.problem.modes) modes[contact] = mode;
   for (std::size_t i = 0; i + 1 < a.l.z.size(); ++i) point[a.problem.flow->names()[i]] = display_value(a.l.z[i]);
   for (const auto& [name, distance] : a.moved()) moved[name] = distance;
   return {{"format", 1},
@@ -121,6 +123,7 @@ Json to_json(const Answer& a) {
           {"ignorable", a.ignorable()},
           {"dependent", a.names(a.l.symmetry.chart.dependent)},
           {"open_contacts", a.problem.open_contacts},
+          {"modes", modes},
           {"certificate", a.problem.certificate}};
 }
 
@@ -172,6 +175,12 @@ std::string text(const Answer& a) {
   if (!a.problem.open_contacts.empty())
     out += fmt::format("open contacts     {}: the equations hold while they are open\n",
                        fmt::join(a.problem.open_contacts, ", "));
+  std::vector<std::string> held;
+  for (const auto& [contact, mode] : a.problem.modes) {
+    if (mode != "open") held.push_back(contact + " " + mode);
+  }
+  if (!held.empty())
+    out += fmt::format("held contacts     {}: the equations hold in these modes\n", fmt::join(held, ", "));
   if (!a.ignorable().empty()) out += fmt::format("ignorable         {}\n", fmt::join(a.ignorable(), ", "));
   return out + fmt::format("certificate       {}\n", a.problem.certificate);
 }
@@ -180,7 +189,7 @@ int execute(const Options& options, const CommonOptions& common) {
   const std::shared_ptr<const model::Model> model = load_model(options.model);
   const analysis::SteadyProblem problem =
       analysis::steady_problem("linearize", model, options.scene, overrides_of("linearize", options, *model),
-                               options.at, common.seed, analysis::Contacts::open);
+                               options.at, common.seed, analysis::Contacts::held);
   const linear::Linearisation l = analysis::linearise_at_state(problem, common.seed);
   const analysis::OutputSlopes outputs = analysis::linearise_outputs(problem, l, options.outputs);
   const Answer answer{problem, l, outputs};
