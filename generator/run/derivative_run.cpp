@@ -6,15 +6,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "run/contact_changes.hpp"
 #include "run/methods.hpp"
 #include "run/variational_equations.hpp"
 
 namespace eomgen::run {
 
 void require_derivatives(const RunRequest& request, const RunResult& result) {
-  if (!request.code.contacts.empty() || !request.code.contact_set.empty())
-    refuse_derivative(
-        "contacts and friction change the equations during the run, and derivatives of the end jump there");
+  if (const std::string reason = unfollowed_contacts(request); !reason.empty())
+    refuse_derivative(reason + ", and derivatives are not implemented there");
   for (std::size_t i = 0; i < request.events.size(); ++i) {
     if (request.events[i].stop && !request.events[i].reset.set.empty())
       refuse_derivative(fmt::format("the event '{}' ends the run and changes the state there", request.events[i].name));

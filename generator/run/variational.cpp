@@ -2,10 +2,28 @@
 #include "run/variational.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
 
 #include "run/variational_jumps.hpp"
 
 namespace eomgen::run {
+namespace {
+
+constexpr double relative_difference = 1e-3;  // of the state
+
+/// Offsets in units of h, in the order of difference_offsets, and weights of the derivative to order 4, times h.
+constexpr std::array<std::pair<double, double>, 4> order_four{
+    {{2, -1.0 / 12}, {-2, 1.0 / 12}, {1, 8.0 / 12}, {-1, -8.0 / 12}}};
+
+double largest_size(const std::vector<double>& values) {
+  double size = 0;
+  for (const double v : values) size = std::max(size, std::abs(v));
+  return size;
+}
+
+}  // namespace
 
 class VariationalRun::Run {
  public:
@@ -44,6 +62,7 @@ class VariationalRun::Run {
   // The right-hand side of x and s. dx may alias x: x is read before dx is written.
   int operator()(double t, const double* x, double* dx) {
     auto& context = jumps_.equations().context;
+    if (context.solved_contacts) return differences(t, x, dx);
     eom::hybrid::Model& model = context.model;
     const double* u = model.inputs(t);
     std::copy(u, u + u_.size(), u_.begin());
@@ -73,6 +92,41 @@ class VariationalRun::Run {
       for (const double dx : d.dx) x.push_back(d.scale * dx);
     }
     return x;
+  }
+
+  // f(t, x + h s) and f(t, x, p + h dp) at the distances h and 2 h on both sides, to order 4.
+  int differences(double t, const double* x, double* dx) {
+    const std::vector<double> at(x, x + n_ * (directions_.size() + 1));
+    std::vector<double> state(n_), value(n_);
+    const auto add = [&](VariationalEquations& in, double weight, std::size_t d) {
+      if (const int code = in.context.rhs(t, state.data(), value.data()); code != 0) return code;
+      for (std::size_t i = 0; i < n_; ++i) slopes_[d * n_ + i] += weight * value[i];
+      return 0;
+    };
+    std::fill(slopes_.begin(), slopes_.end(), 0.0);
+    const std::vector<double> own(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(n_));
+    for (std::size_t d = 0; d < directions_.size(); ++d) {
+      const std::vector<double> s(at.begin() + static_cast<std::ptrdiff_t>((d + 1) * n_),
+                                  at.begin() + static_cast<std::ptrdiff_t>((d + 2) * n_));
+      const double size = largest_size(s);
+      const double h = size > 0 ? relative_difference * std::max(largest_size(own), scene_.atol) / size : 0;
+      for (const auto& [offset, weight] : order_four) {
+        if (size == 0) break;
+        for (std::size_t i = 0; i < n_; ++i) state[i] = own[i] + offset * h * s[i];
+        if (const int code = add(jumps_.equations(), weight / h, d); code != 0) return code;
+      }
+      state = own;
+      const auto& beside = jumps_.neighbours(d);  // at h, -h, h/2, -h/2, ..
+      const double scale = directions_[d].scale;
+      for (std::size_t k = 0; k < order_four.size() && k < beside.size(); ++k) {
+        const double weight = order_four[k].second * 2 * scale / directions_[d].step;
+        if (const int code = add(jumps_.in_segment(*beside[k]), weight, d); code != 0) return code;
+      }
+    }
+    if (const int code = jumps_.equations().context.rhs(t, own.data(), f_.data()); code != 0) return code;
+    std::copy(f_.begin(), f_.end(), dx);
+    std::copy(slopes_.begin(), slopes_.end(), dx + n_);
+    return 0;
   }
 
   int derivatives(double t, const double* x, const int* mode) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The motion together with its derivatives s along directions of change, through everything that interrupts a run
-// without contacts. In: a run, directions. Out: the state and the derivatives at its end.
+// The motion together with its derivatives s along directions of change, through everything that interrupts a run.
+// In: a run, directions. Out: the state and the derivatives at its end.
 //
 //   between interruptions        s' = df/dx s + df/dp dp + df/du du,   s(t0) = dx0 - f dt0
 //   where t = t_k(p) (samples too), or where a surface g(t, x) = 0 of a kink is crossed at t_k, with x+ = J(x-):

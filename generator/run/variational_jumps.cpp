@@ -8,6 +8,7 @@
 #include <eom/hybrid/impulses.hpp>
 
 #include "run/central_differences.hpp"
+#include "run/contact_changes.hpp"
 
 namespace eomgen::run {
 namespace {
@@ -16,6 +17,7 @@ using eom::hybrid::Breakpoint;
 
 constexpr int smaller_differences = -4, most_differences = 8;  // powers of 2; number of the differences tried
 constexpr double continuous = 1e-10;                           // of f: a smaller jump is rounding
+constexpr double impulse = 1e-9;                               // of the state: a smaller change is rounding
 
 double largest(const std::vector<double>& values) {
   double size = 0;
@@ -26,9 +28,10 @@ double largest(const std::vector<double>& values) {
 /// Whether slopes by narrower differences are those by wider ones, but for their rounding. Far from the point a
 /// function may be as smooth, with another slope.
 bool agree(const Slopes& wider, const Slopes& narrower, const std::vector<double>& middle, double step) {
-  constexpr double tolerance = 1e-6, rounding = 1e-12;
+  constexpr double tolerance = 1e-6, rounding = 1e-13;
+  const double error = rounding * largest(middle) / step;
   for (std::size_t i = 0; i < middle.size(); ++i) {
-    const double allowed = tolerance * std::abs(narrower.value[i]) + rounding * std::abs(middle[i]) / step;
+    const double allowed = tolerance * std::abs(narrower.value[i]) + error;
     if (!(std::abs(wider.value[i] - narrower.value[i]) <= allowed)) return false;
   }
   return true;
@@ -45,7 +48,7 @@ VariationalJumps::VariationalJumps(const RunRequest& request, const RunResult& m
       n_(own_.problem.states()),
       f_(n_) {}
 
-std::vector<eom::EventFunction> VariationalJumps::watched_functions() const {
+std::vector<eom::EventFunction> VariationalJumps::watched_functions() {
   const auto& all = own_.context.events;
   std::vector<eom::EventFunction> watched(all.size(), {eom::Direction::any, eom::Watch::off});
   const std::size_t first = all.first_kink();
@@ -54,12 +57,14 @@ std::vector<eom::EventFunction> VariationalJumps::watched_functions() const {
     if (!event.reset.set.empty()) watched[i] = {event.direction, eom::Watch::breaking};
   }
   for (std::size_t k = first; k < all.first_contact(); ++k) watched[k].watch = eom::Watch::breaking;
+  watch_contacts(own_, watched);
   return watched;
 }
 
 bool VariationalJumps::start(eom::Result& total) {
   segment_ = 0;
   own_.context.kinks.start();
+  start_contacts(total.x);
   own_.enter(segment_);
   own_.context.freeze_branches(total.t, total.x.data(), true);
   const std::vector<DueSample> due = due_samples(own_.problem, scene_.t0, scene_.t0);
@@ -99,7 +104,9 @@ bool VariationalJumps::end(eom::Result& total) {
 }
 
 bool VariationalJumps::cross_event(const eom::EventPoint& point) {
-  return point.crossing.function < own_.context.events.first_kink() ? reset(point) : cross_surface(point);
+  const std::size_t function = point.crossing.function;
+  if (function < own_.context.events.first_kink()) return reset(point);
+  return function < own_.context.events.first_contact() ? cross_surface(point) : change_contact(point);
 }
 
 std::vector<double> VariationalJumps::state_of(const std::vector<double>& x) const {
@@ -333,6 +340,81 @@ bool VariationalJumps::cross_surface(const eom::EventPoint& point) {
   return true;
 }
 
+// (t, x)+ = J(t, x). Without an impulse J is the identity, and only f changes.
+bool VariationalJumps::change_contact(const eom::EventPoint& point) {
+  const double t = point.t;
+  const std::vector<double> x(point.x.begin(), point.x.end()), own = state_of(x);
+  std::vector<double> before(n_), behind(n_);
+  if (!rhs(t, own.data(), before)) return true;  // the integration reports it
+  std::vector<double> times;
+  for (std::size_t d = 0; d < directions_.size(); ++d) times.push_back(time_change(point.crossing.function, t, x, d));
+  const ContactSnapshot modes = save_contacts(own_);
+  std::optional<ContactSnapshot> next;
+  bool same = true;
+  const auto changed = [&](VariationalEquations& in, double at, std::vector<double> state) {
+    restore_contacts(in, modes);
+    change_contacts(in, point.crossing, at, state);
+    const ContactSnapshot now = save_contacts(in);
+    if (!next) next = now;
+    same = same && now.has_modes_of(*next);
+    restore_contacts(in, modes);
+    state.push_back(at);
+    return state;
+  };
+  const std::vector<double> after = changed(own_, t, own);
+  double jump = std::abs(after[n_] - t);
+  for (std::size_t i = 0; i < n_; ++i) jump = std::max(jump, std::abs(after[i] - own[i]));
+  if (next->has_modes_of(modes) && jump == 0) return false;
+  std::vector<std::vector<double>> slopes_after;
+  for (std::size_t d = 0; d < directions_.size(); ++d) {
+    std::vector<double> s = sensitivity(x, d);
+    for (std::size_t k = 0; k < n_; ++k) s[k] += before[k] * times[d];
+    if (jump <= impulse * largest(own)) {
+      s.push_back(times[d]);
+      slopes_after.push_back(std::move(s));
+      continue;
+    }
+    const Direction& direction = directions_[d];
+    const auto what = [&] {
+      return fmt::format("the change of a contact at t = {} does not change smoothly with {}", t, direction.name);
+    };
+    std::vector<std::vector<double>> beside;
+    for (const auto& neighbour : neighbours(d)) {
+      neighbour->enter(segment_);
+      beside.push_back(changed(*neighbour, t, own));
+    }
+    const std::vector<double> of_scene = own_slopes(d, after, beside, what);
+    std::vector<double> slope = along(t, own, times[d], s, what, [&](double at, std::vector<double> state) {
+      return changed(own_, at, std::move(state));
+    });
+    for (std::size_t k = 0; k <= n_; ++k) slope[k] += of_scene[k];
+    slopes_after.push_back(std::move(slope));
+  }
+  if (!same) refuse_derivative(fmt::format("beside the motion, a contact changes to another mode at t = {}", t));
+  std::copy(after.begin(), after.end() - 1, point.x.begin());
+  point.t = after[n_];
+  restore_contacts(own_, *next);
+  own_.context.freeze_branches(point.t, after.data(), true);
+  watch_contacts(own_, point.functions);
+  if (!rhs(point.t, after.data(), behind)) return true;
+  for (std::size_t d = 0; d < directions_.size(); ++d) {
+    for (std::size_t k = 0; k < n_; ++k)
+      point.x[(d + 1) * n_ + k] = directions_[d].scale * (slopes_after[d][k] - slopes_after[d][n_] * behind[k]);
+  }
+  return true;
+}
+
+/// The modes at the start, which must not begin with an impact.
+void VariationalJumps::start_contacts(const std::vector<double>& x) {
+  if (!own_.context.has_contacts()) return;
+  const std::vector<double> before = state_of(x);
+  std::vector<double> own = before;
+  own_.context.start_contacts(scene_.t0, own);
+  double jump = 0;
+  for (std::size_t i = 0; i < n_; ++i) jump = std::max(jump, std::abs(own[i] - before[i]));
+  if (jump > scene_.atol + scene_.rtol * largest(before)) refuse_derivative("the run starts with an impact");
+}
+
 /// The change along direction d of the time at which an event function is 0. x: with every s.
 double VariationalJumps::time_change(std::size_t function, double t, const std::vector<double>& x, std::size_t d) {
   const std::vector<double> own = state_of(x);
@@ -354,7 +436,6 @@ double VariationalJumps::time_change(std::size_t function, double t, const std::
   return dt;
 }
 
-/// A scene beside that of the run, in the segment and the mode of the run.
 VariationalEquations& VariationalJumps::in_segment(VariationalEquations& neighbour) {
   neighbour.enter(segment_);
   neighbour.context.model.set_mode(own_.context.model.mode());
@@ -364,9 +445,14 @@ VariationalEquations& VariationalJumps::in_segment(VariationalEquations& neighbo
 const std::vector<std::unique_ptr<VariationalEquations>>& VariationalJumps::neighbours(std::size_t d) {
   neighbours_.resize(directions_.size());
   std::vector<std::unique_ptr<VariationalEquations>>& made = neighbours_[d];
-  if (!made.empty()) return made;
-  for (const Scene& scene : directions_[d].beside)
-    made.push_back(std::make_unique<VariationalEquations>(problem_in(scene, own_.problem), kink_times(scene)));
+  if (made.empty()) {
+    for (const Scene& scene : directions_[d].beside)
+      made.push_back(std::make_unique<VariationalEquations>(problem_in(scene, own_.problem), kink_times(scene)));
+  }
+  if (own_.context.has_contacts()) {
+    const ContactSnapshot modes = save_contacts(own_);
+    for (const auto& neighbour : made) restore_contacts(*neighbour, modes);
+  }
   return made;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What interrupts a run without contacts, for the derivatives s of its state along directions of change (the formulas
-// are in variational.hpp): samples and kinks at times, surfaces of kinks, resets at events, the end. In: a run,
+// What interrupts a run, for the derivatives s of its state along directions of change (the formulas are in
+// variational.hpp): samples and kinks at times, surfaces of kinks, resets at events, changes of contacts, the end. In: a run,
 // directions, the state x with every s. Out: x and every s behind the interruption.
 #pragma once
 
@@ -31,7 +31,7 @@ class VariationalJumps {
   bool is_last_segment() const { return segment_ == own_.kinks.size() || own_.kinks[segment_].after >= motion_.t; }
   double segment_end() const { return is_last_segment() ? motion_.t : own_.kinks[segment_].before; }
   /// Which events and surfaces interrupt.
-  std::vector<eom::EventFunction> watched_functions() const;
+  std::vector<eom::EventFunction> watched_functions();
 
   // The following change total.x or point.x: x, then s of each direction times its scale. False of those with a result:
   // f has no value, and the run ends. All throw Error{stage "run"} if an interruption does not follow smoothly.
@@ -43,7 +43,8 @@ class VariationalJumps {
   /// At the end of the run: s at the moving end. It appends the change of the time of the end per direction, times the
   /// scale.
   bool end(eom::Result& total);
-  /// At an event or the surface of a kink that depends on the state. False: x and s go on unchanged.
+  /// At an event, the surface of a kink that depends on the state, or a change of a contact, which may move point.t and
+  /// changes what is watched. False: x and s go on unchanged.
   bool cross_event(const eom::EventPoint& point);
 
   /// A description for a refusal.
@@ -52,6 +53,11 @@ class VariationalJumps {
   /// The derivative of values along (dt, dx), by differences as wide as they are smooth.
   std::vector<double> along(double t, const std::vector<double>& x, double dt, const std::vector<double>& dx,
                             const What& what, const Values& values) const;
+
+  /// The scenes beside that of the run along direction d, with the contacts in its modes.
+  const std::vector<std::unique_ptr<VariationalEquations>>& neighbours(std::size_t d);
+  /// A scene beside that of the run, in the segment and the mode of the run.
+  VariationalEquations& in_segment(VariationalEquations& neighbour);
 
  private:
   using ValuesIn = std::function<std::vector<double>(VariationalEquations& in, double t, const std::vector<double>& x)>;
@@ -69,11 +75,11 @@ class VariationalJumps {
   void change_by_samples(const std::vector<DueSample>& due, eom::Result& total, const std::vector<double>& dt);
   bool reset(const eom::EventPoint& point);
   bool cross_surface(const eom::EventPoint& point);
+  bool change_contact(const eom::EventPoint& point);
+  void start_contacts(const std::vector<double>& x);
   double time_change(std::size_t function, double t, const std::vector<double>& x, std::size_t d);
   std::vector<double> own_slopes(std::size_t d, const std::vector<double>& middle,
                                  const std::vector<std::vector<double>>& beside, const What& what) const;
-  VariationalEquations& in_segment(VariationalEquations& neighbour);
-  const std::vector<std::unique_ptr<VariationalEquations>>& neighbours(std::size_t d);
   std::optional<std::size_t> stopping_event() const;
   bool rhs(double t, const double* x, std::vector<double>& f) { return own_.context.rhs(t, x, f.data()) == 0; }
 

@@ -420,7 +420,6 @@ TEST_CASE("sensitivity: values without derivative are refused with a remedy") {
     CHECK(contains(result.err, "remedy: "));
   };
   refused({"run", "model.toml", "--sensitivity", "q"}, "there is no parameter or coordinate 'q'");
-  refused({"run", "bouncing_ball", "--sensitivity", "g"}, "contacts and friction change the equations");
   // The sample at the end of the run, t = 6, is taken or not.
   refused({"run", "sampled_cart_pole", "--sensitivity", "Ts"}, "the samples, or the contacts at the start, change");
   // The run shortens its steps for a force that is narrow in the state, and the variational equations do not.

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/contact_changes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace eomgen::run {
+
+bool ContactSnapshot::has_modes_of(const ContactSnapshot& other) const {
+  if (modes && other.modes && modes->mode != other.modes->mode) return false;
+  if (!solved || !other.solved) return true;
+  const auto same = [](const eom::contacts::ContactState& a, const eom::contacts::ContactState& b) {
+    return a.mode == b.mode;
+  };
+  return std::equal(solved->states.begin(), solved->states.end(), other.solved->states.begin(), same);
+}
+
+ContactSnapshot save_contacts(const VariationalEquations& in) {
+  ContactSnapshot result{in.context.model.mode(), {}, {}};
+  if (in.context.contacts) result.modes = in.context.contacts->save();
+  if (in.context.solved_contacts) result.solved = in.context.solved_contacts->save();
+  return result;
+}
+
+void restore_contacts(VariationalEquations& in, const ContactSnapshot& from) {
+  if (in.context.contacts) {
+    eom::hybrid::ContactModes::State state = *from.modes;
+    state.restitution = in.context.contacts->save().restitution;
+    in.context.contacts->restore(state);
+  }
+  if (in.context.solved_contacts) in.context.solved_contacts->restore(*from.solved);
+  in.context.model.set_mode(from.mode);
+}
+
+void watch_contacts(VariationalEquations& in, std::span<eom::EventFunction> functions) {
+  const eom::hybrid::EventFunctions& events = in.context.events;
+  if (in.context.contacts) in.context.contacts->watch(events.of_contacts(functions));
+  if (in.context.solved_contacts) in.context.solved_contacts->watch(events.of_solved_contacts(functions));
+}
+
+void change_contacts(VariationalEquations& in, const eom::Crossing& crossing, double& t, std::vector<double>& x) {
+  eom::hybrid::RunContext& context = in.context;
+  std::vector<eom::EventFunction> functions(context.events.size());
+  eom::Crossing local = crossing;
+  bool ended = false;
+  if (context.contacts) {
+    local.function -= context.events.first_contact();
+    context.contacts->handle_event(t, x, local, context.events.of_contacts(functions));
+    context.model.set_contact_mode(context.contacts->mode());
+    ended = context.contacts->end_outcome().has_value();
+  } else {
+    local.function -= context.events.first_solved_contact();
+    context.solved_contacts->handle_event(t, x, local, context.events.of_solved_contacts(functions));
+    ended = context.solved_contacts->end_outcome().has_value();
+  }
+  if (ended) refuse_derivative(fmt::format("a contact ends the run at t = {}", t));
+}
+
+std::string unfollowed_contacts(const RunRequest& request) {
+  const auto two = [](const auto& contact) { return contact.sticks && contact.dimensions == 2; };
+  for (const eom::Contact& contact : request.code.contacts) {
+    if (two(contact)) return fmt::format("'{}' slides in two directions", contact.name);
+  }
+  for (const eom::contacts::Description& contact : request.code.contact_set.contacts) {
+    if (contact.sticks && contact.slip.size() == 2) return fmt::format("'{}' slides in two directions", contact.name);
+  }
+  if (request.code.contacts.empty() && request.code.contact_set.empty()) return "";
+  const bool resets = std::any_of(request.events.begin(), request.events.end(),
+                                  [](const eom::hybrid::WatchedEvent& event) { return !event.reset.set.empty(); });
+  if (resets || !request.samples.empty()) return "the model has contacts, and events or samples that change its state";
+  return "";
+}
+
+}  // namespace eomgen::run

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Contacts in variational equations: their modes, which several states beside one another share, and the change of the
+// state where a mode ends. In: the equations, the function of a contact that crossed zero. Out: time, state and modes
+// after impacts.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "run/variational_equations.hpp"
+
+namespace eomgen::run {
+
+/// The modes of all contacts, with the history that decides the next ones.
+struct ContactSnapshot {
+  eom::ModeArray mode;  // of the model
+  std::optional<eom::hybrid::ContactModes::State> modes;
+  std::optional<eom::hybrid::SolvedContacts::State> solved;
+
+  /// Whether the contacts of another snapshot are in the same modes.
+  bool has_modes_of(const ContactSnapshot& other) const;
+};
+
+ContactSnapshot save_contacts(const VariationalEquations& in);
+/// Puts the contacts into the modes of a snapshot of the same problem. Their coefficients of restitution stay.
+void restore_contacts(VariationalEquations& in, const ContactSnapshot& from);
+
+/// Sets what integrate_events monitors of the contacts, in an array of all event functions.
+void watch_contacts(VariationalEquations& in, std::span<eom::EventFunction> functions);
+
+/// Applies the law of contacts where event function `crossing` is 0: t and x are those after it. Throws Error{stage
+/// "run"} if it ends the run.
+void change_contacts(VariationalEquations& in, const eom::Crossing& crossing, double& t, std::vector<double>& x);
+
+/// The reason why derivatives cannot follow the contacts of a run; empty if they can.
+std::string unfollowed_contacts(const RunRequest& request);
+
+}  // namespace eomgen::run

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// run --sensitivity across impacts and changes of contacts: against closed forms and differences of runs.
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+
+#include "program.hpp"
+
+using namespace eomgen::test;
+
+namespace {
+
+constexpr double differences = 1e-6;  // of order 4, from runs at rtol 1e-12
+
+/// Derivatives of the final state of model.toml by some values.
+Json derivatives(const Folder& folder, const std::string& by) {
+  return document(folder, {"run", "model.toml", "--sensitivity", by})["sensitivities"]["values"];
+}
+
+/// The final states of runs with other values of a parameter.
+Json end_with(const Folder& folder, const std::string& parameter, double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return document(folder, {"run", "model.toml", "--set", parameter + "=" + text, "--rtol", "1e-12", "--atol", "1e-13",
+                           "--no-error-estimate", "--no-charts"})["final"];
+}
+
+/// Compares with a central difference of order 4 of four runs.
+void agree(const Json& found, const Folder& folder, const std::string& by, double value,
+           const std::vector<std::string>& states, double relative = 2e-3) {
+  CAPTURE(by);
+  const double h = relative * std::abs(value);
+  std::array<Json, 4> ends;
+  constexpr std::array<double, 4> offsets{2, 1, -1, -2}, weights{-1, 8, -8, 1};
+  for (std::size_t k = 0; k < ends.size(); ++k) ends[k] = end_with(folder, by, value + offsets[k] * h);
+  for (const std::string& state : states) {
+    CAPTURE(state);
+    double expected = 0;
+    for (std::size_t k = 0; k < ends.size(); ++k) expected += weights[k] * ends[k][state].get<double>() / (12 * h);
+    CHECK(std::abs(found[by][state].get<double>() - expected) < differences * (1 + std::abs(expected)));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("sensitivity: a bounce, by its closed form") {
+  const Folder folder;
+  folder.write("model.toml",
+               "format = 1\n[parameters]\nm = 1\ng = 9.81\nh = 1.3\ne = 0.7\n[[particle]]\nname = \"ball\"\nmass = "
+               "\"m\"\nposition = { cartesian = [\"x\", \"y\"] }\n[[force]]\ngravity = \"-g*E2\"\n[[constraint]]\nname "
+               "= \"floor\"\nholonomic = \"y\"\nholds = \"unilateral\"\nrestitution = \"e\"\n[scene.default]\nt = [0, "
+               "1]\ninitial = { x_dot = 3, y = \"h\" }\nrtol = 1e-11\natol = 1e-12\n");
+  const Json found = derivatives(folder, "g,h,e,y_dot");
+  const double g = 9.81, h = 1.3, e = 0.7, T = std::sqrt(2 * h / g), t = 1 - T, v = std::sqrt(2 * g * h);
+  const auto check = [&](const char* by, double y, double rate) {
+    CAPTURE(std::string(by));
+    CHECK(found[by]["y"].get<double>() == doctest::Approx(y).epsilon(1e-9));
+    CHECK(found[by]["y_dot"].get<double>() == doctest::Approx(rate).epsilon(1e-9));
+  };
+  // y = e v (1 - T) - g (1 - T)^2/2, y_dot = e v - g (1 - T)
+  const auto by = [&](double dv, double dT, double dg, double de) {
+    return std::array<double, 2>{de * v * t + e * dv * t - e * v * dT - dg * t * t / 2 + g * t * dT,
+                                 de * v + e * dv - dg * t + g * dT};
+  };
+  const auto of_g = by(h / v, -T / (2 * g), 1, 0), of_h = by(g / v, T / (2 * h), 0, 0), of_e = by(0, 0, 0, 1);
+  const auto of_start = by(0, 1 / g, 0, 0);  // thrown upwards with u: v^2 = u^2 + 2 g h, T = (u + v)/g
+  check("g", of_g[0], of_g[1]);
+  check("h", of_h[0], of_h[1]);
+  check("e", of_e[0], of_e[1]);
+  check("y_dot", of_start[0], of_start[1]);
+  CHECK(found["e"]["x"] == 0.0);
+}
+
+TEST_CASE("sensitivity: sliding that ends, by its closed form") {
+  const Folder folder;
+  folder.write("model.toml",
+               "format = 1\n[parameters]\nm = 1\ng = 9.81\nmu = 0.3\n[[particle]]\nname = \"block\"\nmass = "
+               "\"m\"\nposition = { cartesian = [\"x\", \"y\"] }\n[[force]]\ngravity = \"-g*E2\"\n[[constraint]]\nname "
+               "= \"floor\"\nholonomic = \"y\"\nfriction = { static = \"mu\", dynamic = \"mu\" }\n[scene.default]\nt = "
+               "[0, 2]\ninitial = { x_dot = 3 }\nrtol = 1e-11\natol = 1e-12\n");
+  const Json found = derivatives(folder, "mu,x_dot");  // x = v^2/(2 mu g)
+  CHECK(found["mu"]["x"].get<double>() == doctest::Approx(-9 / (2 * 0.09 * 9.81)).epsilon(1e-9));
+  CHECK(found["x_dot"]["x"].get<double>() == doctest::Approx(3 / (0.3 * 9.81)).epsilon(1e-9));
+  CHECK(std::abs(found["mu"]["x_dot"].get<double>()) < 1e-9);
+}
+
+TEST_CASE("sensitivity: a body that sticks, slips, is thrown and meets a wall agrees with differences of runs") {
+  const Folder folder;
+  // A block on a spring whose end moves: stick-slip, then impacts with a stop.
+  folder.write(
+      "model.toml",
+      "format = 1\n[parameters]\nm = 1\nk = 30\nu = 0.6\nmu = 0.25\nmus = 0.35\ne = 0.6\nw = 1.1\n"
+      "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = [\"x\", \"y\"] }\n[[force]]\ngravity "
+      "= \"-9.81*E2\"\n[[force]]\non = \"P\"\nforce = \"k*(u*t - x)*E1\"\n[[constraint]]\nname = \"floor\"\n"
+      "holonomic = \"y\"\nholds = \"unilateral\"\nfriction = { static = \"mus\", dynamic = \"mu\" }\n"
+      "[[constraint]]\nname = \"wall\"\nholonomic = \"w - x\"\nholds = \"unilateral\"\nrestitution = \"e\"\n"
+      "[scene.default]\nt = [0, 2.2]\ninitial = { x = 0, y = 0 }\nrtol = 1e-11\natol = 1e-12\n");
+  const Json run = document(folder, {"run", "model.toml"});
+  std::size_t slips = 0, hits = 0;
+  for (const Json& event : run["events"]) {
+    slips += event["kind"] == "slip" ? 1 : 0;
+    hits += event["kind"] == "contact" && event["name"] == "wall" ? 1 : 0;
+  }
+  REQUIRE(slips >= 1);
+  REQUIRE(hits >= 1);
+  const Json found = derivatives(folder, "mu,mus,k,e,w,u");
+  agree(found, folder, "mu", 0.25, {"x", "x_dot"});
+  agree(found, folder, "mus", 0.35, {"x", "x_dot"});
+  agree(found, folder, "k", 30, {"x", "x_dot"});
+  agree(found, folder, "e", 0.6, {"x", "x_dot"});
+  agree(found, folder, "w", 1.1, {"x", "x_dot"}, 1e-5);
+}
+
+TEST_CASE("sensitivity: a particle that leaves a sphere agrees with differences of runs") {
+  const Folder folder;
+  folder.write(
+      "model.toml",
+      "format = 1\n[parameters]\nm = 1\ng = 9.81\nR = 0.8\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = "
+      "{ cartesian = [\"x\", \"y\"] }\n[[force]]\ngravity = \"-g*E2\"\n[[constraint]]\nname = "
+      "\"sphere\"\nholonomic = \"sqrt(x^2 + y^2) - R\"\nholds = \"unilateral\"\n[scene.default]\nt = [0, "
+      "0.9]\ninitial = { x = 0.1, x_dot = 0.6 }\nguess = { y = 0.8 }\nrtol = 1e-11\natol = 1e-12\n");
+  const Json found = derivatives(folder, "g,R");
+  agree(found, folder, "g", 9.81, {"x", "y", "x_dot", "y_dot"});
+  agree(found, folder, "R", 0.8, {"x", "y", "x_dot", "y_dot"});
+}
+
+TEST_CASE("sensitivity: impacts with friction agree with differences of runs") {
+  const Folder folder;
+  // A rod falls on a rough floor; Moreau's and Poisson's laws.
+  for (const char* law : {"moreau", "poisson"}) {
+    CAPTURE(std::string(law));
+    folder.write(
+        "model.toml",
+        "format = 1\n[parameters]\nm = 1\nL = 0.8\nmu = 0.2\ne = 0.5\nh = 0.7\n[[body]]\nname = \"rod\"\nmass "
+        "= \"m\"\ninertia = { principal = [\"m*L^2/12\", \"m*L^2/12\", \"m*L^2/12\"] }\nposition = { cartesian "
+        "= [\"x\", \"y\"] }\nrotation = { axis = \"E3\", angle = \"q\" }\n[[force]]\ngravity = "
+        "\"-9.81*E2\"\n[[contact]]\nname = \"tip\"\nbody = \"rod\"\npoints = { a = \"L/2*rod.e1\", b = "
+        "\"-L/2*rod.e1\" }\non = { point = \"origin\", normal = \"E2\" }\nrestitution = \"e\"\nfriction = { "
+        "static = \"mu\", dynamic = \"mu\" }\n[impacts]\nlaw = \"" +
+            std::string(law) +
+            "\"\n[scene.default]\nt = [0, 0.45]\ninitial = { y = \"h\", q = 0.7, x_dot = 1 }\nrtol = 1e-10\natol "
+            "= 1e-11\n");
+    const Json run = document(folder, {"run", "model.toml"});
+    REQUIRE(run["events"].size() >= 1);
+    const Json found = derivatives(folder, "mu,e,h");
+    agree(found, folder, "mu", 0.2, {"x_dot", "y_dot", "q", "q_dot"});
+    agree(found, folder, "e", 0.5, {"x_dot", "y_dot", "q", "q_dot"});
+    agree(found, folder, "h", 0.7, {"x_dot", "y_dot", "q", "q_dot"});
+  }
+}
+
+TEST_CASE("sensitivity: contacts that slide in two directions, and impacts at the start, are refused by name") {
+  const Folder folder;
+  const std::string puck =
+      "format = 1\n[parameters]\nm = 1\nmu = 0.3\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = "
+      "[\"x\", \"y\", \"z\"] }\n[[force]]\ngravity = \"-9.81*E3\"\n[[constraint]]\nname = \"table\"\nholonomic = "
+      "\"dot(P, E3)\"\nfriction = { static = \"mu\", dynamic = \"mu\" }\n[scene.default]\nt = [0, 1]\ninitial = { "
+      "x_dot "
+      "= 3, y_dot = 1 }\n";
+  folder.write("model.toml", puck);
+  CHECK(contains(expect(2, folder, {"run", "model.toml", "--sensitivity", "mu"}).err,
+                 "'table' slides in two directions"));
+  folder.write("model.toml",
+               "format = 1\n[parameters]\ng = 9.81\n[coordinates]\ny = {}\n[energy]\nkinetic = "
+               "\"y_dot^2/2\"\npotential = \"g*y\"\n[[constraint]]\nname = \"floor\"\nholonomic = \"y\"\nholds = "
+               "\"unilateral\"\nrestitution = 0.5\n[scene.default]\nt = [0, 0.1]\ninitial = { y = 0, y_dot = -1 }\n");
+  CHECK(contains(expect(2, folder, {"run", "model.toml", "--sensitivity", "g"}).err, "starts with an impact"));
+}
