@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "model/contact_shapes.hpp"
 #include "model/names.hpp"
 
 namespace eomgen::model {
@@ -39,9 +40,11 @@ class ContactTable {
       std::vector<std::string_view> further;
       void (ContactTable::*expand)(const Value&);
     };
-    const std::array<Kind, 4> kinds{{{"points", {"body", "on", "friction"}, &ContactTable::points},
+    const std::array<Kind, 6> kinds{{{"points", {"body", "on", "friction"}, &ContactTable::points},
                                      {"corners", {"body", "on", "friction"}, &ContactTable::corners},
+                                     {"shape", {"body", "on", "friction"}, &ContactTable::shape},
                                      {"spheres", {"radius", "friction"}, &ContactTable::spheres},
+                                     {"particles", {"radius", "on", "friction"}, &ContactTable::particles},
                                      {"limits", {}, &ContactTable::limits}}};
     const Kind* chosen = nullptr;
     for (const Kind& kind : kinds) {
@@ -51,8 +54,8 @@ class ContactTable {
     }
     if (chosen == nullptr)
       fail(table_, "does not state what touches what",
-           "add points = { .. } or corners = [a, b, c] of a body, spheres = [\"A\", \"B\", ..], or limits = { q = [a, "
-           "b] }");
+           "add points = { .. }, corners = [a, b, c] or shape = { .. } of a body, spheres = [\"A\", \"B\", ..], "
+           "particles = [\"P\", ..], or limits = { q = [a, b] }");
     std::vector<std::string> known{"name", "restitution", chosen->key};
     known.insert(known.end(), chosen->further.begin(), chosen->further.end());
     for (const Entry& entry : table_.entries) {
@@ -137,6 +140,84 @@ class ContactTable {
                            expression(edges[k], "an edge"), body.text, k + 1);
       }
       add_point(value, std::to_string(corner + 1), arm);
+    }
+  }
+
+  /// The only entry of a table that names one of the kinds of `all`. further: other keys of that kind.
+  template <class Kinds>
+  const auto& kind_of(const Value& table, const Kinds& all, const std::string& what) const {
+    std::vector<std::string> names;
+    for (const auto& kind : all) names.emplace_back(kind.name);
+    if (table.is(Value::Kind::table)) {
+      for (const auto& kind : all) {
+        if (table.find(kind.name) != nullptr) return kind;
+      }
+    }
+    fail(table, fmt::format("names no {}", what), fmt::format("the kinds are {}", fmt::join(names, ", ")));
+  }
+
+  /// The unit normal of the plane under a body.
+  std::string normal_of(const Value& on) const {
+    if (on.is(Value::Kind::text) && on.text == "ground") return "E3";
+    const Value* normal = on.is(Value::Kind::table) ? on.find("normal") : nullptr;
+    if (normal == nullptr)
+      fail(on, "has a shape, which touches planes",
+           "write on = \"ground\", or on = { point = \"..\", normal = \"..\" }");
+    return "unit(" + expression(*normal, "the normal") + ")";
+  }
+
+  void shape(const Value& value) {
+    const BodyShape& kind = kind_of(value, body_shapes(), "shape");
+    if (value.entries.size() != 1)
+      fail(value, "has a shape with several kinds", fmt::format("write shape = {{ {} = .. }} alone", kind.name));
+    const Value& body = require("body", "add body = \"B\", whose surface touches");
+    require_text(body, "the body");
+    const Value& given = *value.find(kind.name);
+    std::vector<std::string> sizes;
+    if (kind.sizes.size() == 1) {
+      sizes.push_back(expression(given, fmt::format("the {}", kind.sizes[0])));
+    } else {
+      const std::vector<Value>& items = list(given, fmt::format("the sizes of the {}", kind.name));
+      if (items.size() != kind.sizes.size())
+        fail(given, fmt::format("gives {} sizes of the {}", items.size(), kind.name),
+             fmt::format("write {} = [{}]", kind.name, fmt::join(kind.sizes, ", ")));
+      for (std::size_t k = 0; k < items.size(); ++k)
+        sizes.push_back(expression(items[k], fmt::format("the {}", kind.sizes[k])));
+    }
+    const std::string normal = normal_of(require("on", "add on = \"ground\", or a plane"));
+    std::size_t count = 0;
+    for (const std::string& point : kind.points(body.text, sizes, normal))
+      add_point(value, std::to_string(++count), point);
+  }
+
+  void particles(const Value& value) {
+    const std::vector<Value>& names = list(value, "the particles");
+    if (names.empty()) fail(value, "has no particles", "write particles = [\"P\", ..]");
+    const Value& on = require("on", "add on = { sphere = \"R\", centre = \"..\" }, or another obstacle");
+    const Obstacle& kind = kind_of(on, obstacles(), "obstacle");
+    std::vector<std::string> values{expression(*on.find(kind.name), fmt::format("the {}", kind.name))};
+    for (const char* key : kind.further) {
+      const Value* further = on.find(key);
+      if (further == nullptr) fail(on, fmt::format("has no {}", key), fmt::format("add {} = \"..\"", key));
+      values.push_back(expression(*further, fmt::format("the {}", key)));
+    }
+    for (const Entry& entry : on.entries) {
+      const bool known = entry.key == kind.name ||
+                         std::find(kind.further.begin(), kind.further.end(), entry.key) != kind.further.end();
+      if (!known)
+        source_.fail(entry.span, fmt::format("a {} that particles touch has no key {}", kind.name, quote(entry.key)),
+                     kind.further.empty()
+                         ? "remove it"
+                         : fmt::format("its keys are {}, {}", kind.name, fmt::join(kind.further, ", ")));
+    }
+    const Value* radius = table_.find("radius");
+    if (radius != nullptr && std::string_view(kind.name) == "surface")
+      fail(*radius, "gives a radius, and a ball touches a surface beside the point below it", "remove radius");
+    const std::string size = radius == nullptr ? "0" : expression(*radius, "the radius");
+    for (const Value& name : names) {
+      require_text(name, "a particle");
+      begin(name, name.text)
+          .entries.push_back({"holonomic", value.span, text_value(name, kind.gap(name.text, values, size))});
     }
   }
 

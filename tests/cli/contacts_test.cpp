@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Shapes of a [[contact]]: the times at which falling bodies and particles touch, by the height of their shape; energy.
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+
+#include "program.hpp"
+
+using namespace eomgen::test;
+
+namespace {
+
+constexpr double g = 9.81, tilt = 0.6, start = 2;
+
+/// A body that falls from rest at the height 2, with its axis e3 at the angle 0.6 to the vertical.
+std::string falling(const std::string& shape, const std::string& on = "\"ground\"") {
+  return "format = 1\n[parameters]\nm = 1\ng = 9.81\nR = 0.3\nL = 0.8\n[[body]]\nname = \"B\"\nmass = \"m\"\ninertia = "
+         "{ "
+         "principal = [0.1, 0.1, 0.05] }\nposition = { cartesian = [\"x\", \"y\", \"z\"] }\nrotation = { axis = "
+         "\"E2\", "
+         "angle = \"q\" }\n[[force]]\ngravity = \"-g*E3\"\n[[contact]]\nname = \"c\"\nbody = \"B\"\nshape = { " +
+         shape + " }\non = " + on +
+         "\nrestitution = 1\n[scene.default]\nt = [0, 0.8]\ninitial = { z = 2, q = 0.6 }\nrtol = 1e-11\natol = 1e-12\n";
+}
+
+struct Touch {
+  std::string name;
+  double t;
+};
+
+Touch first_touch(const Folder& folder, const std::string& text) {
+  folder.write("model.toml", text);
+  const Json run = document(folder, {"run", "model.toml"});
+  CHECK(std::abs(run["power_balance"].get<double>()) < 1e-8);
+  for (const Json& event : run["events"]) {
+    if (event["kind"] == "contact") return {event["name"], event["t"]};
+  }
+  return {"", -1};
+}
+
+void falls_to(const Folder& folder, const std::string& text, const std::string& name, double height) {
+  CAPTURE(text);
+  const Touch touch = first_touch(folder, text);
+  CHECK(touch.name == name);
+  CHECK(touch.t == doctest::Approx(std::sqrt(2 * (start - height) / g)).epsilon(1e-9));
+}
+
+}  // namespace
+
+TEST_CASE("shapes: a falling body touches the ground where its shape has its lowest point, and keeps its energy") {
+  const Folder folder;
+  const double s = std::sin(tilt), c = std::cos(tilt), R = 0.3, L = 0.8;
+  falls_to(folder, falling("sphere = \"R\""), "c_1", R);
+  falls_to(folder, falling("disk = \"R\""), "c_1", R * s);
+  falls_to(folder, falling("capsule = [\"R\", \"L\"]"), "c_2", R + L / 2 * c);
+  falls_to(folder, falling("cylinder = [\"R\", \"L\"]"), "c_2", R * s + L / 2 * c);
+  falls_to(folder, falling("cone = [\"R\", \"L\"]"), "c_2", R * s + L / 4 * c);
+  falls_to(folder, falling("ellipsoid = [\"R\", 0.1, \"L/2\"]"), "c_1", std::hypot(R * s, L / 2 * c));
+  // A plane at the height 0.5 that is written with a normal of length 3.
+  falls_to(folder, falling("capsule = [\"R\", \"L\"]", "{ point = \"0.5*E3\", normal = \"3*E3\" }"), "c_2",
+           0.5 + R + L / 2 * c);
+}
+
+TEST_CASE("shapes: a capsule on a slope touches at the distance along the normal of the slope") {
+  const Folder folder;
+  const double a = 0.2, R = 0.3, L = 0.8;  // slope; the axis has the angle 0.6 to E3
+  const double along = std::sin(tilt) * -std::sin(a) + std::cos(tilt) * std::cos(a);  // e3 . n
+  falls_to(folder,
+           falling("capsule = [\"R\", \"L\"]", "{ point = \"origin\", normal = \"-sin(0.2)*E1 + cos(0.2)*E3\" }"),
+           "c_2", (R + L / 2 * along) / std::cos(a));
+}
+
+TEST_CASE("shapes: particles meet spheres, shells, cylinders, cones and surfaces where these are") {
+  const Folder folder;
+  const auto particle = [](const std::string& on, const std::string& more) {
+    return "format = 1\n[parameters]\nm = 1\ng = 9.81\nS = 0.7\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { "
+           "cartesian = [\"x\", \"y\", \"z\"] }\n[[force]]\ngravity = \"-g*E3\"\n[[contact]]\nname = \"c\"\nparticles "
+           "= "
+           "[\"P\"]\non = { " +
+           on + " }\nrestitution = 0.5\n" + more +
+           "[scene.default]\nt = [0, 0.8]\ninitial = { x = 0.2, y = 0.1, z = 2 }\nrtol = 1e-11\natol = 1e-12\n";
+  };
+  const double x = 0.2, y = 0.1, S = 0.7, r = 0.05;
+  falls_to(folder, particle("sphere = \"S\", centre = \"0.3*E3\"", "radius = 0.05\n"), "c_P",
+           0.3 + std::sqrt((S + r) * (S + r) - x * x - y * y));
+  falls_to(folder, particle("hollow = 3, centre = \"2*E3\"", "radius = 0.05\n"), "c_P",
+           2 - std::sqrt((3 - r) * (3 - r) - x * x - y * y));
+  falls_to(folder, particle("cylinder = \"S\", point = \"0.1*E2\", axis = \"2*E1\"", "radius = 0.05\n"), "c_P", S + r);
+  falls_to(folder, particle("cone = \"0.5\", apex = \"E3\", axis = \"-E3\"", ""), "c_P",
+           1 - std::hypot(x, y) / std::tan(0.5));
+  falls_to(folder, particle("surface = \"0.3*sin(2*x) + y^2\"", "friction = { static = 0.3, dynamic = 0.3 }\n"), "c_P",
+           0.3 * std::sin(2 * x) + y * y);
+}
+
+TEST_CASE("shapes: a ball leaves a sphere at two thirds of the height of its centre") {
+  const Folder folder;
+  folder.write(
+      "model.toml",
+      "format = 1\n[parameters]\nm = 1\ng = 9.81\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { "
+      "cartesian = [\"x\", 0, \"z\"] }\n[[force]]\ngravity = \"-g*E3\"\n[[contact]]\nname = \"c\"\nparticles = "
+      "[\"P\"]\nradius = 0.1\non = { sphere = 0.9, centre = \"0*E1\" }\n[[event]]\nname = \"low\"\nwhen = \"z - "
+      "2/3\"\n[scene.default]\nt = [0, 5]\ninitial = { x = 0.001 }\nguess = { z = 1 }\nrtol = 1e-11\natol = "
+      "1e-12\n");
+  const Json run = document(folder, {"run", "model.toml"});
+  double left = -1, low = -2;
+  for (const Json& event : run["events"]) {
+    if (event["kind"] == "lose_contact") left = event["t"];
+    if (event["name"] == "low") low = event["t"];
+  }
+  CHECK(std::abs(left - low) < 1e-6);  // it starts 5e-7 below the top
+}
+
+TEST_CASE("shapes: unknown kinds, wrong sizes and missing keys are refused with a remedy") {
+  const Folder folder;
+  const auto refused = [&](const std::string& text, const char* what) {
+    folder.write("model.toml", text);
+    const ChildResult result = expect(2, folder, {"check", "model.toml"});
+    CHECK(contains(result.err, what));
+    CHECK(contains(result.err, "remedy: "));
+  };
+  refused(falling("torus = \"R\""), "names no shape");
+  refused(falling("capsule = \"R\""), "gives the sizes of the capsule as");
+  refused(falling("capsule = [\"R\"]"), "gives 1 sizes of the capsule");
+  refused(falling("sphere = \"R\"", "\"B\""), "has a shape, which touches planes");
+}
