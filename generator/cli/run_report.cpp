@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "cli/gradient_report.hpp"
@@ -115,6 +116,15 @@ std::string watched(const pipeline::Simulation& simulation) {
                                 result.projection_velocity, result.projection_work));
 }
 
+constexpr std::array<const char*, 4> impact_laws{"newton", "poisson", "moreau", "stronge"};
+constexpr std::array<const char*, 2> impact_orders{"simultaneous", "sequence"};
+
+/// The law of impacts that the model chooses, and their order.
+Json impact_law(const model::Impacts& impacts) {
+  return {{"law", impact_laws.at(static_cast<std::size_t>(impacts.law))},
+          {"order", impact_orders.at(static_cast<std::size_t>(impacts.order))}};
+}
+
 /// When the C compiler made the code.
 const char* compiled_when(const pipeline::CompiledCode& code) {
   if (code.tier() == pipeline::Tier::jit) return "never";
@@ -196,6 +206,7 @@ Json RunReport::json() const {
                             {"newton_iterations", cost.newton_iterations},
                             {"newton_failures", cost.newton_failures}};
   }
+  if (derived.model.impacts) document["impacts"] = impact_law(*derived.model.impacts);
   Json written = Json::array();
   for (const WrittenFile& file : files) {
     written.push_back({{"path", file.path}, {"bytes", file.bytes}});

@@ -59,10 +59,26 @@ void require_contact_inputs(Mechanics& m) {
   }
 }
 
+namespace {
+
+/// Throws Error if Stronge's law is chosen and a contact that can open has two directions of slip.
+void require_one_direction(const Mechanics& m) {
+  for (const Contact& contact : m.contacts) {
+    const bool energetic = m.model->impacts && m.model->impacts->law == model::Impacts::Law::stronge;
+    if (!energetic || !contact.unilateral || contact.dimensions() < 2 || contact.width) continue;
+    throw Error("mechanics", m.model->where(friction_law_of(m, contact).span),
+                "'" + contact.name + "' can slip in two directions, and Stronge's law is defined for one",
+                "write law = \"moreau\" or \"poisson\" in [impacts], or let the bodies move in a plane");
+  }
+}
+
+}  // namespace
+
 void number_contact_inputs(Mechanics& m) {
   const auto requires_input = [](const Constraint& constraint) { return constraint.force_input.has_value(); };
   const bool constrained = std::any_of(m.constraints.begin(), m.constraints.end(), requires_input);
   if (!constrained && !needs_contact_inputs(m)) return;
+  require_one_direction(m);
   InputAdder inputs(m);
   const std::shared_ptr<const model::Model> before = m.model;
   for (Contact& contact : m.contacts) {

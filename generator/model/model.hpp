@@ -293,6 +293,7 @@ struct Impacts {
     newton,   // normal speeds; impulses along the normals
     poisson,  // normal impulses of compression and restitution, with friction
     moreau,   // normal speeds, with friction
+    stronge,  // work of the normal impulses, with friction in one direction of slip
   };
   enum class Order { simultaneous, sequence };
   Law law = Law::newton;

@@ -240,10 +240,17 @@ void ConstraintsReader::read_impacts() {
   Impacts impacts;
   impacts.span = table->span;
   impacts.law = static_cast<Impacts::Law>(
-      chosen("law", {"newton", "poisson", "moreau"},
-             "write law = \"newton\" (the default, without friction), \"poisson\" or \"moreau\""));
+      chosen("law", {"newton", "poisson", "moreau", "stronge"},
+             "write law = \"newton\" (the default, without friction), \"poisson\", \"moreau\" or \"stronge\""));
   impacts.order = static_cast<Impacts::Order>(chosen(
       "order", {"simultaneous", "sequence"}, "write order = \"simultaneous\" (the default) or order = \"sequence\""));
+  if (impacts.law == Impacts::Law::stronge) {
+    const Value* order = table->find("order");
+    if (order != nullptr && impacts.order == Impacts::Order::simultaneous)
+      source_.fail(order->span, "Stronge's law holds for one contact at a time",
+                   "write order = \"sequence\", or leave order out");
+    impacts.order = Impacts::Order::sequence;
+  }
   const auto opens = [](const Constraint& constraint) { return constraint.unilateral; };
   if (std::none_of(model_.constraints.begin(), model_.constraints.end(), opens))
     source_.fail(table->span, "[impacts] has no effect: no contact of the model can open",

@@ -124,3 +124,84 @@ TEST_CASE("shapes: unknown kinds, wrong sizes and missing keys are refused with 
   refused(falling("capsule = [\"R\"]"), "gives 1 sizes of the capsule");
   refused(falling("sphere = \"R\"", "\"B\""), "has a shape, which touches planes");
 }
+
+namespace {
+
+/// A rod that falls without turning on its lower tip, which slips with 0.3 m/s. Its slip reverses in compression.
+std::string falling_rod(const std::string& impacts, double mu, double e) {
+  return "format = 1\n[parameters]\nm = 1\nL = 0.8\nmu = " + std::to_string(mu) + "\ne = " + std::to_string(e) +
+         "\n[[body]]\nname = \"rod\"\nmass = \"m\"\ninertia = { principal = [\"m*L^2/12\", \"m*L^2/12\", \"m*L^2/12\"] "
+         "}\nposition = { cartesian = [\"x\", \"y\"] }\nrotation = { axis = \"E3\", angle = \"q\" "
+         "}\n[[force]]\ngravity "
+         "= \"-9.81*E2\"\n[[contact]]\nname = \"tip\"\nbody = \"rod\"\npoints = { a = \"L/2*rod.e1\", b = "
+         "\"-L/2*rod.e1\" }\non = { point = \"origin\", normal = \"E2\" }\nrestitution = \"e\"\nfriction = { static = "
+         "\"mu\", dynamic = \"mu\" }\n[impacts]\n" +
+         impacts +
+         "\n[scene.default]\nt = [0, 0.31]\ninitial = { y = 0.7, q = 0.7, x_dot = 0.3 }\nrtol = 1e-11\natol = 1e-12\n";
+}
+
+/// Velocities (x, y, turning) after the impact of the rod, by small steps of the normal impulse.
+std::array<double, 3> after_impact(double mu, double e) {
+  const double q = 0.7, L = 0.8, I = L * L / 12, rx = -L / 2 * std::cos(q), ry = -L / 2 * std::sin(q);
+  std::array<double, 3> v{0.3, -std::sqrt(2 * g * (0.7 - L / 2 * std::sin(q))), 0};
+  const double step = 2e-6;
+  double compression = 0, work = 0;
+  for (bool compressing = true;;) {
+    const double slip = v[0] - v[2] * ry, normal = v[1] + v[2] * rx;
+    if (compressing && normal >= 0) compressing = false, compression = work, work = 0;
+    if (!compressing && work >= -e * e * compression) return v;
+    work += normal * step;
+    const double friction = slip > 0 ? -mu * step : mu * step;
+    v[0] += friction;
+    v[1] += step;
+    v[2] += (rx * step - ry * friction) / I;
+  }
+}
+
+}  // namespace
+
+TEST_CASE("impacts: Stronge's law follows the slip of a rod's tip through its reversal, and loses energy") {
+  const Folder folder;
+  for (const double e : {0.3, 0.5, 0.9}) {
+    CAPTURE(e);
+    folder.write("model.toml", falling_rod("law = \"stronge\"", 0.2, e));
+    const Json run = document(folder, {"run", "model.toml"});
+    const std::array<double, 3> expected = after_impact(0.2, e);
+    CHECK(std::abs(run["final"]["x_dot"].get<double>() - expected[0]) < 1e-4);
+    CHECK(std::abs(run["final"]["q_dot"].get<double>() - expected[2]) < 1e-4);
+    CHECK(run["impacts"] == Json({{"law", "stronge"}, {"order", "sequence"}}));
+    REQUIRE(run["events"].size() >= 1);
+    CHECK(run["events"][0]["kind"] == "contact");
+    CHECK(run["events"][0]["work"].get<double>() < 0);
+    CHECK(std::abs(run["power_balance"].get<double>()) < 1e-9);
+  }
+}
+
+TEST_CASE("impacts: without friction Stronge's, Poisson's and Newton's laws agree") {
+  const Folder folder;
+  const auto final = [&](const char* law) {
+    folder.write("model.toml", falling_rod("law = \"" + std::string(law) + "\"", 0, 0.6));
+    return document(folder, {"run", "model.toml"})["final"];
+  };
+  const Json stronge = final("stronge");
+  for (const char* law : {"newton", "poisson"}) {
+    const Json other = final(law);
+    for (const char* state : {"x_dot", "y_dot", "q_dot"})
+      CHECK(std::abs(stronge[state].get<double>() - other[state].get<double>()) < 1e-9);
+  }
+}
+
+TEST_CASE("impacts: Stronge's law is refused for slip in two directions, and for simultaneous impacts") {
+  const Folder folder;
+  const auto refused = [&](const std::string& text, const char* what) {
+    folder.write("model.toml", text);
+    const ChildResult result = expect(2, folder, {"check", "model.toml"});
+    CHECK(contains(result.err, what));
+    CHECK(contains(result.err, "remedy: "));
+  };
+  refused(falling_rod("law = \"stronge\"\norder = \"simultaneous\"", 0.2, 0.5), "one contact at a time");
+  std::string ball = falling("sphere = \"R\"");
+  ball.replace(ball.find("restitution = 1"), 15,
+               "restitution = 1\nfriction = { static = 0.2, dynamic = 0.2 }\n[impacts]\nlaw = \"stronge\"");
+  refused(ball, "'c_1' can slip in two directions");
+}

@@ -72,7 +72,7 @@ std::string text(const eom::contacts::Description& c) {
                      place(c.restitution), place(c.friction_input), place(c.force_input), place(c.mode_input));
 }
 std::string text(eom::contacts::ImpactLaw law) {
-  static constexpr std::array<const char*, 3> laws{"newton", "poisson", "moreau"};
+  static constexpr std::array<const char*, 4> laws{"newton", "poisson", "moreau", "stronge"};
   return fmt::format("eom::contacts::ImpactLaw::{}", laws.at(static_cast<std::size_t>(law)));
 }
 std::string text(eom::contacts::ImpactOrder order) {

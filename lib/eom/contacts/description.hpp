@@ -51,7 +51,7 @@ struct Description {
 };
 
 /// The law of impacts.
-enum class ImpactLaw { newton, poisson, moreau };
+enum class ImpactLaw { newton, poisson, moreau, stronge };
 /// How contacts that meet at the same time take their impulses.
 enum class ImpactOrder { simultaneous, sequence };
 

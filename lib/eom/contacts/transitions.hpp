@@ -13,6 +13,7 @@
 
 #include "eom/contacts/contact_forces.hpp"
 #include "eom/contacts/contact_problem.hpp"
+#include "eom/contacts/stronge.hpp"
 #include "eom/contacts/thresholds.hpp"
 
 namespace eom::contacts {
@@ -52,7 +53,8 @@ class Transitions {
       const Result first = apply(t, x, u, touching, all, false, tolerances, hit);
       return first.outcome != Outcome::done ? first : apply(t, x, u, touching, all, true, tolerances, hit);
     }
-    if (forces_.set().order == ImpactOrder::simultaneous)
+    const bool energetic = forces_.set().law == ImpactLaw::stronge;  // of one contact at a time
+    if (forces_.set().order == ImpactOrder::simultaneous && !energetic)
       return apply(t, x, u, touching, plastic, false, tolerances, hit);
     constexpr int most = 10000;  // each reduces the kinetic energy, or exchanges it
     for (int count = 0; count < most; ++count) {
@@ -64,7 +66,8 @@ class Transitions {
         if (rate < speed) speed = rate, fastest = j;
       }
       if (fastest == none) return {};
-      const Result result = apply(t, x, u, {fastest}, plastic, false, tolerances, hit);
+      const Result result = energetic ? collide(t, x, u, fastest, plastic[fastest], hit)
+                                      : apply(t, x, u, {fastest}, plastic, false, tolerances, hit);
       if (result.outcome != Outcome::done) return result;
     }
     return {Outcome::endless, 0, none};
@@ -145,6 +148,47 @@ class Transitions {
           total(i) > 0 && std::find(hit.begin(), hit.end(), j) == hit.end())
         hit.push_back(j);
     }
+    return {};
+  }
+
+  /// The impact of contact j by Stronge's law. Contacts that cannot open hold, without friction.
+  Result collide(double t, double* x, double* u, std::size_t j, bool plastic, std::vector<std::size_t>& hit) {
+    const Description& at = forces_.contact(j);
+    ContactProblem rows(forces_, t, x, u);
+    const Index normal = rows.add_row(j, at.normal, forces_.normal_pattern(j, false), Kind::closes);
+    if (at.sticks) rows.add_friction(j, normal, forces_.value(at.dynamic_coefficient));
+    const Index own = rows.size();
+    for (std::size_t i = 0; i < forces_.set().contacts.size(); ++i) {
+      if (!forces_.contact(i).unilateral && forces_.contact(i).has_constraint())
+        rows.add_row(i, forces_.contact(i).normal, forces_.normal_pattern(i, false), Kind::holds);
+    }
+    if (const int code = rows.complete(); code != 0) return {Outcome::no_value, code, none};
+    const Eigen::MatrixXd& G = rows.problem().G;
+    const Index held = rows.size() - own;
+    Eigen::MatrixXd reaction = Eigen::MatrixXd::Zero(held, own);  // of the held rows to unit impulses
+    for (Index k = 0; k < own && held > 0; ++k)
+      reaction.col(k) = solve_least_norm(G.bottomRightCorner(held, held), -G.block(own, k, held, 1)).x;
+    const Eigen::MatrixXd response = G.topLeftCorner(own, own) + G.topRightCorner(own, held) * reaction;
+    Collision collision;
+    collision.normal = speed(rows.row(0), x);
+    collision.nn = response(0, 0);
+    collision.restitution = plastic ? 0 : forces_.value(at.restitution);
+    if (own > 1) {
+      const double scale = forces_.value(at.normal_scale);  // |normal force| = scale lambda
+      collision.tangential = speed(rows.row(1), x);
+      collision.nt = response(0, 1);
+      collision.tt = response(1, 1);
+      collision.friction = forces_.value(at.dynamic_coefficient) * scale;
+    }
+    const CollisionImpulse found = solve_collision(collision);
+    if (!found.found) return {Outcome::no_solution, 0, j};
+    Vector impulses = Vector::Zero(rows.size());
+    impulses(0) = found.normal;
+    if (own > 1) impulses(1) = found.tangential;
+    if (held > 0) impulses.tail(held) = reaction * impulses.head(own);
+    for (Index k = 0; k < rows.size(); ++k)
+      Eigen::Map<Vector>(x + n_, static_cast<Index>(n_)) += impulses(k) * rows.response(k);
+    if (std::find(hit.begin(), hit.end(), j) == hit.end()) hit.push_back(j);
     return {};
   }
 
