@@ -14,7 +14,7 @@ namespace {
 constexpr double differences = 1e-6;  // of order 4, from runs at rtol 1e-12
 
 /// Derivatives of the final state of model.toml by some values.
-Json derivatives(const Folder& folder, const std::string& by) {
+Json values_of_derivatives(const Folder& folder, const std::string& by) {
   return document(folder, {"run", "model.toml", "--sensitivity", by})["sensitivities"]["values"];
 }
 
@@ -51,7 +51,7 @@ TEST_CASE("sensitivity: a bounce, by its closed form") {
                "\"m\"\nposition = { cartesian = [\"x\", \"y\"] }\n[[force]]\ngravity = \"-g*E2\"\n[[constraint]]\nname "
                "= \"floor\"\nholonomic = \"y\"\nholds = \"unilateral\"\nrestitution = \"e\"\n[scene.default]\nt = [0, "
                "1]\ninitial = { x_dot = 3, y = \"h\" }\nrtol = 1e-11\natol = 1e-12\n");
-  const Json found = derivatives(folder, "g,h,e,y_dot");
+  const Json found = values_of_derivatives(folder, "g,h,e,y_dot");
   const double g = 9.81, h = 1.3, e = 0.7, T = std::sqrt(2 * h / g), t = 1 - T, v = std::sqrt(2 * g * h);
   const auto check = [&](const char* by, double y, double rate) {
     CAPTURE(std::string(by));
@@ -79,7 +79,7 @@ TEST_CASE("sensitivity: sliding that ends, by its closed form") {
                "\"m\"\nposition = { cartesian = [\"x\", \"y\"] }\n[[force]]\ngravity = \"-g*E2\"\n[[constraint]]\nname "
                "= \"floor\"\nholonomic = \"y\"\nfriction = { static = \"mu\", dynamic = \"mu\" }\n[scene.default]\nt = "
                "[0, 2]\ninitial = { x_dot = 3 }\nrtol = 1e-11\natol = 1e-12\n");
-  const Json found = derivatives(folder, "mu,x_dot");  // x = v^2/(2 mu g)
+  const Json found = values_of_derivatives(folder, "mu,x_dot");  // x = v^2/(2 mu g)
   CHECK(found["mu"]["x"].get<double>() == doctest::Approx(-9 / (2 * 0.09 * 9.81)).epsilon(1e-9));
   CHECK(found["x_dot"]["x"].get<double>() == doctest::Approx(3 / (0.3 * 9.81)).epsilon(1e-9));
   CHECK(std::abs(found["mu"]["x_dot"].get<double>()) < 1e-9);
@@ -104,7 +104,7 @@ TEST_CASE("sensitivity: a body that sticks, slips, is thrown and meets a wall ag
   }
   REQUIRE(slips >= 1);
   REQUIRE(hits >= 1);
-  const Json found = derivatives(folder, "mu,mus,k,e,w,u");
+  const Json found = values_of_derivatives(folder, "mu,mus,k,e,w,u");
   agree(found, folder, "mu", 0.25, {"x", "x_dot"});
   agree(found, folder, "mus", 0.35, {"x", "x_dot"});
   agree(found, folder, "k", 30, {"x", "x_dot"});
@@ -120,7 +120,7 @@ TEST_CASE("sensitivity: a particle that leaves a sphere agrees with differences 
       "{ cartesian = [\"x\", \"y\"] }\n[[force]]\ngravity = \"-g*E2\"\n[[constraint]]\nname = "
       "\"sphere\"\nholonomic = \"sqrt(x^2 + y^2) - R\"\nholds = \"unilateral\"\n[scene.default]\nt = [0, "
       "0.9]\ninitial = { x = 0.1, x_dot = 0.6 }\nguess = { y = 0.8 }\nrtol = 1e-11\natol = 1e-12\n");
-  const Json found = derivatives(folder, "g,R");
+  const Json found = values_of_derivatives(folder, "g,R");
   agree(found, folder, "g", 9.81, {"x", "y", "x_dot", "y_dot"});
   agree(found, folder, "R", 0.8, {"x", "y", "x_dot", "y_dot"});
 }
@@ -143,7 +143,7 @@ TEST_CASE("sensitivity: impacts with friction agree with differences of runs") {
             "= 1e-11\n");
     const Json run = document(folder, {"run", "model.toml"});
     REQUIRE(run["events"].size() >= 1);
-    const Json found = derivatives(folder, "mu,e,h");
+    const Json found = values_of_derivatives(folder, "mu,e,h");
     agree(found, folder, "mu", 0.2, {"x_dot", "y_dot", "q", "q_dot"});
     agree(found, folder, "e", 0.5, {"x_dot", "y_dot", "q", "q_dot"});
     agree(found, folder, "h", 0.7, {"x_dot", "y_dot", "q", "q_dot"});
