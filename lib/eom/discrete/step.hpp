@@ -31,10 +31,18 @@ using Methods = std::variant<
     Midpoint>;
 // clang-format on
 
+namespace detail {
+
+template <class... M>
+constexpr std::array<const char*, sizeof...(M)> names_of(std::type_identity<std::variant<M...>>) {
+  return {M::name...};
+}
+
+}  // namespace detail
+
 /// The names of the methods, in order.
-inline constexpr auto method_names = []<class... M>(std::type_identity<std::variant<M...>>) {
-  return std::array<const char*, sizeof...(M)>{M::name...};
-}(std::type_identity<Methods>{});
+inline constexpr std::array<const char*, std::variant_size_v<Methods>> method_names =
+    detail::names_of(std::type_identity<Methods>{});
 
 /// A step of a method, with its work space. A call depends on its arguments only, and allocates nothing. One thread at
 /// a time may use an object.
