@@ -66,7 +66,8 @@ class MechanismBuilder {
   std::string function_of_time() {
     feature("prescribed motion");
     const std::string name = "f" + std::to_string(++functions_);
-    function_lines_ += name + " = \"" + dice_.decimal(10, 40) + "*sin(" + dice_.decimal(50, 300) + "*t)\"\n";
+    const std::string smooth = dice_.decimal(10, 40) + "*sin(" + dice_.decimal(50, 300) + "*t)";
+    function_lines_ += name + " = \"" + (times_ ? kink_of_time() : smooth) + "\"\n";
     return name;
   }
 
@@ -146,6 +147,11 @@ class MechanismBuilder {
 
   // mechanisms.cpp
   void add_armatures();
+  // mechanism_times.cpp
+  std::string kink_of_time();
+  void add_times();
+  std::string signal();
+  std::string start_value(std::size_t of, bool rate, const std::string& number);
   // mechanism_states.cpp
   std::string free_coordinate();
   void add_states();
@@ -157,7 +163,7 @@ class MechanismBuilder {
   Mechanism result_;
   bool contacts_ = false, planar_ = false, equal_ = false, rolling_ = false;
   bool between_ = false;
-  bool small_ = false, states_ = false, armatures_ = false;
+  bool small_ = false, states_ = false, armatures_ = false, times_ = false;
   int named_parameters_ = 50, parameters_ = 0, functions_ = 0, inputs_ = 0, constraints_ = 0, joints_ = 0;
   std::vector<Place> places_;
   std::vector<std::string> coordinates_, spins_;

@@ -15,6 +15,13 @@ std::string MechanismBuilder::chart(Place& place) {
     for (const std::string& n : names) place.own.push_back(n);
     return names;
   };
+  if (times_ && dice_.chance(50)) {
+    feature("entries that are expressions");
+    const std::string x = own({offset()})[0], y = own({offset()})[0];
+    coordinate_lines_ += x + " = {}\n";
+    const std::string entries = "[\"" + x + " + " + function_of_time() + "\", \"" + y + "\"";
+    return "{ cartesian = " + entries + (planar_ ? "]" : ", \"" + own({offset()})[0] + "\"]") + tail;
+  }
   if (planar_) {
     switch (dice_.below(3)) {
       case 0:

@@ -12,7 +12,8 @@ namespace {
 constexpr std::uint64_t first_with_contacts = 1001, first_with_forces_between_bodies = 2001,
                         first_small = 10001,  // one or two places, otherwise the same: many models in a short time
     first_with_states = 20001,                // small ones with states and resets in place of contacts
-    first_with_armatures = 1000001;           // of any size, with armatures and without states
+    first_with_armatures = 1000001,           // of any size, with armatures and without states
+    first_with_times = 2000001;  // small, with states, kinks at the start, inputs over time, coupled starts
 
 }  // namespace
 
@@ -20,9 +21,10 @@ MechanismBuilder::MechanismBuilder(std::uint64_t seed)
     : dice_(seed),
       contacts_(seed >= first_with_contacts),
       between_(seed >= first_with_forces_between_bodies),
-      small_(seed >= first_small && seed < first_with_armatures),
-      states_(seed >= first_with_states && seed < first_with_armatures),
-      armatures_(seed >= first_with_armatures) {}
+      small_((seed >= first_small && seed < first_with_armatures) || seed >= first_with_times),
+      states_((seed >= first_with_states && seed < first_with_armatures) || seed >= first_with_times),
+      armatures_(seed >= first_with_armatures && seed < first_with_times),
+      times_(seed >= first_with_times) {}
 
 Mechanism MechanismBuilder::build() {
   planar_ = dice_.chance(35);
@@ -53,6 +55,7 @@ Mechanism MechanismBuilder::build() {
   }
   if (states_) add_states();
   if (armatures_) add_armatures();
+  if (times_) add_times();
   return finish();
 }
 
@@ -91,10 +94,10 @@ Mechanism MechanismBuilder::finish() {
       guess_ += (guess_.empty() ? "" : ", ") + q + " = " + value;
       continue;
     }
-    if (!value.empty()) start_ += (start_.empty() ? "" : ", ") + q + " = " + value;
+    if (!value.empty()) start_ += (start_.empty() ? "" : ", ") + q + " = " + start_value(i, false, value);
     // Constraints determine coupled rates: the start is at rest except for prescribed motions.
     if (!rate.empty() && !result_.constrained && constraints_ == 0)
-      start_ += (start_.empty() ? "" : ", ") + q + "_dot = " + rate;
+      start_ += (start_.empty() ? "" : ", ") + q + "_dot = " + start_value(i, true, rate);
   }
   if (result_.constrained || constraints_ > 0) spins_.clear();
   for (const std::string& body : spins_)
@@ -102,6 +105,9 @@ Mechanism MechanismBuilder::finish() {
                                               dice_.decimal(-90, 90) + ", " + dice_.decimal(-90, 90) + "]");
   t += "initial = { " + start_ + " }\n";
   if (!guess_.empty()) t += "guess = { " + guess_ + " }\n";
+  std::string signals;
+  for (int i = 1; times_ && i <= inputs_; ++i) signals += (i > 1 ? ", u" : "u") + std::to_string(i) + " = " + signal();
+  if (!signals.empty()) t += "inputs = { " + signals + " }\n";
   return result_;
 }
 

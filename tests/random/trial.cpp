@@ -2,6 +2,8 @@
 #include "random/trial.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -47,6 +49,8 @@ const std::vector<std::string>& outcomes() {
 
 // The power balance of a run at rtol 1e-9 over 0.3 s; constraints are projected to rounding.
 constexpr double balance_tolerance = 1e-7, constraint_tolerance = 1e-8;
+// Central differences of steps 1e-4 and 2.5e-5 that differ by less have an error of about that.
+constexpr double difference_tolerance = 1e-5;
 
 bool among(const std::string& text, const std::vector<std::string>& parts) {
   return std::any_of(parts.begin(), parts.end(),
@@ -75,7 +79,10 @@ class Attempt {
     command("derive", {"--show", "all"});
     command("verify", {"--no-compile", "--points", "3"});
     if (!limits_.moved) return trial_;
-    if (command("run", {})) inspect_run();
+    if (command("run", {})) {
+      inspect_run();
+      inspect_sensitivity(text);
+    }
     command("linearize", {});
     return trial_;
   }
@@ -128,6 +135,48 @@ class Attempt {
       trial_.findings.push_back({"run", "power balance open: " + std::to_string(number("power_balance"))});
     if (number("constraint_drift") > constraint_tolerance)
       trial_.findings.push_back({"run", "constraints drift: " + std::to_string(number("constraint_drift"))});
+  }
+
+  /// The JSON document of a run at tight tolerances; null where it is not done.
+  Json tight_run(std::vector<std::string> options) {
+    options.insert(options.end(), {"--rtol", "1e-12", "--atol", "1e-13", "--no-error-estimate"});
+    if (!command("run", options)) return nullptr;
+    const Json document = Json::parse(result_.out, nullptr, false);
+    return document.is_discarded() || document.value("outcome", "") != "done" ? Json() : document;
+  }
+
+  /// The derivatives of the end by the first parameter, against differences of runs. A refusal by name is no finding.
+  void inspect_sensitivity(const std::string& text) {
+    const std::string key = "\np1 = ";
+    const std::size_t at = text.find(key);
+    if (at == std::string::npos) return;
+    const double p = std::strtod(text.c_str() + at + key.size(), nullptr);
+    const std::size_t before = trial_.findings.size();
+    const Json found = tight_run({"--sensitivity", "p1"});
+    if (result_.status == 2 && result_.err.find("internal") == std::string::npos) trial_.findings.resize(before);
+    if (found.is_null() || found["sensitivities"]["outcome"] != "done") return;
+    const auto ends = [&](double h) {
+      std::ostringstream number;
+      number.precision(17);
+      number << "p1=" << p + h;
+      return tight_run({"--set", number.str()});
+    };
+    const double h = 1e-4;
+    const Json a = ends(h), b = ends(-h), c = ends(h / 4), d = ends(-h / 4);
+    for (const Json* run : {&a, &b, &c, &d}) {
+      if (run->is_null() || (*run)["events"].size() != found["events"].size()) return;
+    }
+    for (const auto& [name, value] : found["sensitivities"]["values"]["p1"].items()) {
+      if (!value.is_number() || !a["final"].contains(name)) continue;
+      const auto slope = [&](const Json& up, const Json& down, double step) {
+        return (up["final"][name].get<double>() - down["final"][name].get<double>()) / (2 * step);
+      };
+      const double wide = slope(a, b, h), narrow = slope(c, d, h / 4), scale = 1 + std::abs(narrow);
+      if (std::abs(wide - narrow) > difference_tolerance * scale) continue;  // not smooth, or rounding
+      if (std::abs(value.get<double>() - narrow) > 10 * difference_tolerance * scale)
+        trial_.findings.push_back({"run", "sensitivity of " + name + ": " + std::to_string(value.get<double>()) +
+                                              ", by differences " + std::to_string(narrow)});
+    }
   }
 
   std::string program_, folder_;
