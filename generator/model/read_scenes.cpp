@@ -7,6 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <iterator>
+#include <optional>
+#include <set>
+#include <vector>
 
 #include "model/read_bodies.hpp"
 #include "model/read_events.hpp"
@@ -19,6 +23,27 @@ constexpr std::array<std::string_view, 5> merging{"initial", "guess", "parameter
 
 Context plain(std::string what, std::string_view unit) {
   return Context{std::move(what), 0, Shape::scalar, dimension_of(unit), ""};
+}
+
+/// The coordinate q of an initial(q) in an expression, whose value the start determines.
+std::optional<std::uint32_t> start_in(const Model& model, NodeId root) {
+  std::vector<NodeId> left{root};
+  std::set<NodeId> seen;
+  while (!left.empty()) {
+    const NodeId id = left.back();
+    left.pop_back();
+    if (id == no_node || !seen.insert(id).second) continue;
+    const Node& node = model.arena[id];
+    if (node.op == Op::parameter) {
+      if (const auto& of = model.parameters[node.index].initial_value_of) return of;
+    } else if (node.op == Op::definition) {
+      left.push_back(model.definitions[node.index].expression);
+    } else if (node.op == Op::function) {
+      left.push_back(model.functions[node.index].expression);
+    }
+    left.insert(left.end(), std::begin(node.args), std::end(node.args));
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -203,7 +228,19 @@ void ScenesReader::read_initial(Scene& scene, const std::vector<const Entry*>& e
     for (const InitialValue& known : scene.initial) given.insert({known.coordinate, known.order});
   }
   for (const Entry* entry : entries) {
-    if (BodiesReader(context_).read_initial_angular_velocity(scene, *entry, guess)) continue;
+    const auto require_known = [&](NodeId value) {
+      const auto of = start_in(model_, value);
+      if (!of) return;
+      const std::string& q = model_.coordinates[*of].name;
+      source_.fail(
+          entry->value.span,
+          fmt::format("the start value of '{}' uses initial({}), which is not known before the start", entry->key, q),
+          fmt::format("write {}, and give its value before", q));
+    };
+    if (BodiesReader(context_).read_initial_angular_velocity(scene, *entry, guess)) {
+      for (const NodeId component : scene.rotations.back().value) require_known(component);
+      continue;
+    }
     if (const Symbol* state = scope_.find(entry->key); state != nullptr && state->kind == SymbolKind::state) {
       if (guess) {
         source_.fail(entry->span,
@@ -228,6 +265,7 @@ void ScenesReader::read_initial(Scene& scene, const std::vector<const Entry*>& e
     if (context.dimension && initial.order == 1) context.dimension = quotient(*context.dimension, dimension_of("s"));
     const TypedNode typed = resolver_.value(entry->value, context);
     initial.value = typed.node;
+    require_known(initial.value);
     warn_of_degrees(*entry, typed, initial);
     for (const auto& used : resolver_.coordinates_in(initial.value)) {
       if (given.count(used) > 0) continue;
