@@ -196,9 +196,13 @@ void Resolver::report_mismatch(Span span, std::string what, bool loose) {
 
 void Resolver::warn(Span span, std::string message, std::string remedy) {
   constexpr std::size_t most = 100;
-  if (model_.warnings.size() < most) {
-    model_.warnings.push_back(Warning{source_.where(span), std::move(message), std::move(remedy)});
-  }
+  SourceLocation where = source_.where(span);
+  // A scene that inherits from another one reads its inputs again.
+  const bool is_known = std::any_of(model_.warnings.begin(), model_.warnings.end(), [&](const Warning& w) {
+    return w.where.line == where.line && w.where.column == where.column && w.message == message;
+  });
+  if (is_known || model_.warnings.size() >= most) return;
+  model_.warnings.push_back(Warning{std::move(where), std::move(message), std::move(remedy)});
 }
 
 void Resolver::require_allowed(Dependencies dependencies, Span span, std::string_view what) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "model_support.hpp"
 
 using namespace eomgen::model;
@@ -107,6 +110,20 @@ TEST_CASE("an output requested twice is listed once") {
   const Model model = read(particle("[scene.default]\noutputs = [\"kinetic\", \"kinetic\"]\n"));
   CHECK(model.scenes[0].outputs.size() == 1);
   CHECK(model.warnings.front().message == "the output 'kinetic' is requested twice");
+}
+
+TEST_CASE("scenes that inherit an input warn of its unit once") {
+  const auto warnings = [](const std::string& more) {
+    return read(particle("[inputs]\nF = { unit = \"N\", default = 0 }\n[[force]]\non = \"P\"\nforce = \"F*E1\"\n"
+                         "[scene.default]\ninputs = { F = \"3*sin(2[1/s]*t)\" }\n" +
+                         more))
+        .warnings;
+  };
+  const std::vector<eomgen::Warning> once = warnings("");
+  CHECK(std::count_if(once.begin(), once.end(), [](const eomgen::Warning& w) {
+          return w.message == "the input 'F' must be in N, and this is in 1";
+        }) == 1);
+  CHECK(warnings("[scene.second]\nfrom = \"default\"\n[scene.third]\nfrom = \"second\"\n").size() == once.size());
 }
 
 TEST_CASE("an angle above a full turn without a unit causes a warning") {
