@@ -146,3 +146,17 @@ TEST_CASE("bodies: a sphere or disk in contact is drawn as such, unless [draw] g
   CHECK(box[0].kind == "box");
   CHECK(drawn("at = \"-R*E3\"", "").empty());
 }
+
+TEST_CASE("an angular velocity at the start and 'solve' for a rate of its angles exclude one another") {
+  const auto with_scene = [](const std::string& scene) {
+    return refusal(
+        "format = 1\n[[body]]\nname = \"B\"\nmass = 1\ninertia = { principal = [1, 2, 2.5] }\nrotation = { euler "
+        "= \"313\", angles = [\"a\", \"b\", \"c\"] }\n[scene.default]\ninitial = { b = 1, " +
+        scene);
+  };
+  CHECK(with_scene("\"B.omega\" = [1, 2, 3] }\n") == "accepted");
+  CHECK(with_scene("\"B.omega\" = [1, 2, 3] }\nsolve = [\"a_dot\"]\n") ==
+        "'a_dot' in 'solve' follows from 'B.omega', which stays as it is given");
+  CHECK(with_scene("\"B.omega\" = [1, 2, 3], a_dot = 1 }\n") ==
+        "'a_dot' is given, and it follows from 'B.omega' of this scene");
+}
