@@ -196,3 +196,19 @@ TEST_CASE("the fourth Euler parameter follows from three given ones, and coordin
     CHECK(start["z"].get<double>() == (std::string(name) == "free.toml" ? 0 : doctest::Approx(0.2)));
   }
 }
+
+TEST_CASE("a start beside a singular angle runs, in machine code and compiled") {
+  const Folder folder;
+  const auto end = [&](const char* nutation, const char* tier) {
+    folder.write("body.toml",
+                 std::string("format = 1\n[[body]]\nname = \"B\"\nmass = 1\ninertia = { principal = [1, 2, 3] "
+                             "}\nposition = [0, 0, 0]\nrotation = { euler = \"313\", angles = [\"a\", \"b\", "
+                             "\"c\"] }\n[scene.default]\nt = [0, 2]\ninitial = { b = ") +
+                     nutation + ", a_dot = 0.2, b_dot = 0.3, c_dot = 0.1 }\n");
+    return document(folder, {"run", "body.toml", "--tier", tier})["final"]["b"].get<double>();
+  };
+  constexpr double at_the_angle = 0.564625433665;
+  for (const auto& [nutation, tier] :
+       {std::pair{"1e-7", "jit"}, {"1e-8", "jit"}, {"1e-9", "jit"}, {"1e-8", "compiled"}})
+    CHECK(end(nutation, tier) == doctest::Approx(at_the_angle).epsilon(1e-6));
+}
