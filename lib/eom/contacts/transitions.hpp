@@ -155,12 +155,12 @@ class Transitions {
   Result collide(double t, double* x, double* u, std::size_t j, bool plastic, std::vector<std::size_t>& hit) {
     const Description& at = forces_.contact(j);
     ContactProblem rows(forces_, t, x, u);
-    const Index normal = rows.add_row(j, at.normal, forces_.normal_pattern(j, false), Kind::closes);
+    const Index normal = rows.add_row(j, at.normal, forces_.normal_pattern(j, false), Kind::unilateral);
     if (at.sticks) rows.add_friction(j, normal, forces_.value(at.dynamic_coefficient));
     const Index own = rows.size();
     for (std::size_t i = 0; i < forces_.set().contacts.size(); ++i) {
       if (!forces_.contact(i).unilateral && forces_.contact(i).has_constraint())
-        rows.add_row(i, forces_.contact(i).normal, forces_.normal_pattern(i, false), Kind::holds);
+        rows.add_row(i, forces_.contact(i).normal, forces_.normal_pattern(i, false), Kind::bilateral);
     }
     if (const int code = rows.complete(); code != 0) return {Outcome::no_value, code, none};
     const Eigen::MatrixXd& G = rows.problem().G;
