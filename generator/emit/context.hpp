@@ -84,6 +84,7 @@ struct EmissionContext {
   std::vector<TestVector> tests;
   std::shared_ptr<const RunDescription> run = {};                // if requested
   std::shared_ptr<const StartDescription> start_functions = {};  // of NAME_start, if requested (start/start.hpp)
+  bool jumps_in_time = false;               // velocities may jump at kinks in time of prescribed motions
   std::optional<double> single_error = {};  // error in single precision, if requested (single_precision.hpp)
 };
 

@@ -16,6 +16,7 @@
 #include "pipeline/run_text.hpp"
 #include "pipeline/simulate.hpp"
 #include "pipeline/start_description.hpp"
+#include "run/monitored_functions.hpp"
 #include "run/requested_outputs.hpp"
 #include "work.hpp"
 
@@ -204,6 +205,7 @@ Emission emit_model(std::shared_ptr<const model::Model> model, const EmissionReq
   result.certificate = certify(*derived, result.program, {50, emission_points, request.seed, nullptr, wanted.fix});
   require_pass(result.certificate, derived->model);
   emit::EmissionContext context = emission_context(*derived, result.program, scene, result.certificate);
+  context.jumps_in_time = run::may_jump_in_time(derived->candidates.front());
   add_start(request, *derived, context);
   if (has(request.with, "run")) context.run = run_text(*derived, scene, result.program);
   if (request.single) emit::convert_to_single(result.program, context);

@@ -96,6 +96,24 @@ JumpFunctions jump_functions(const system::EquationSystem& s) {
   return result;
 }
 
+bool may_jump_in_time(const system::EquationSystem& s) {
+  using symbolic::Op;
+  symbolic::Dag& dag = *s.dag;
+  std::vector<Ref> roots = s.A;
+  roots.insert(roots.end(), s.b.begin(), s.b.end());
+  roots.push_back(s.kinetic);
+  if (!dag.has_kinks(roots)) return false;
+  roots.pop_back();
+  for (const std::uint32_t q : s.free)
+    roots.push_back(symbolic::partial_derivative(dag, {SymbolKind::coordinate, q, 1})(s.kinetic));
+  const std::vector<Ref> parts = dag.reachable(roots);
+  return std::any_of(parts.begin(), parts.end(), [&](Ref part) {
+    const symbolic::Node node = dag[part];
+    if (node.op == Op::sign) return !depends_on_state(dag, node.args[0]);
+    return node.op == Op::select && !depends_on_state(dag, node.args[0]) && !depends_on_state(dag, node.args[1]);
+  });
+}
+
 std::vector<Table> narrow_functions(const system::EquationSystem& s, Tails tails) {
   std::vector<Ref> roots;
   for (const auto* part : {&s.M, &s.f, &s.A, &s.b, &s.gamma}) roots.insert(roots.end(), part->begin(), part->end());

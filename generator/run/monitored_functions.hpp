@@ -14,6 +14,9 @@ namespace eomgen::run {
 /// Energies, constraints, positions and velocities if the equations have kinks; otherwise empty.
 eom::hybrid::JumpFunctions jump_functions(const system::EquationSystem& system);
 
+/// Whether velocities may jump at a time that the model states, as by a prescribed position 0.3*abs(t - 1).
+bool may_jump_in_time(const system::EquationSystem& system);
+
 /// `none`: functions that vanish, for any error control, a few widths away: exp, tanh, sinh, cosh, high powers of the
 /// state. `any`: also those with tails: quotients whose divisor is a sum, such as 1/sqrt(1 + (x/w)^2)^3, and atan.
 enum class Tails { none, any };

@@ -112,3 +112,27 @@ TEST_CASE("emit --with run: inputs are tables with jumps, or expressions as tabl
       contains(header_of("\"m*sin(t*1[1/s])*1[N/kg]\""),
                "problem.inputs = {{{}, {}, {}, {{{Op::variable, {0}}, {Op::parameter, {0}}, {Op::sin, {0}}, {Op::mul"));
 }
+
+TEST_CASE("targets that integrate refuse kinks in time at which velocities jump") {
+  const Folder folder;
+  const auto write = [&](const std::string& s) {
+    folder.write("kink.toml", "format = 1\n[[particle]]\nname = \"P\"\nmass = 1\nposition = [\"" + s +
+                                  " + sin(th)\", \"-cos(th)\", 0]\n[coordinates]\nth = {}\n[[force]]\ngravity = "
+                                  "\"-9.81*E2\"\n[scene.default]\nt = [0, 4.3]\ninitial = { th = 0.4 }\n");
+  };
+  write("0.3*abs(t-1)");
+  for (const char* target : {"modelica", "cuda"})
+    CHECK(contains(expect(2, folder, {"emit", "kink.toml", "--target", target, "-o", "."}).err, "kink in time"));
+  const bool has_python = run_child({{"sh", "-c", "python3 -c 'import ctypes'"}, folder.path()}).status == 0;
+  if (!has_python) MESSAGE("skipped in part: there is no python3");
+  const auto simulated = [&] {
+    expect(0, folder, {"emit", "kink.toml", "--target", "python", "-o", "."});
+    return run_child({{"python3", "-B", "-c", "import kink\nprint(kink.simulate(4.3).outcome)"}, folder.path()});
+  };
+  if (has_python) CHECK(contains(simulated().err, "simulate has no impulses: use run"));
+  // A kink in the place of a force gives no impulse.
+  write("0.3*sin(t)");
+  folder.write("kink.toml", folder.read("kink.toml") + "[[force]]\non = \"P\"\nforce = \"abs(t - 1)*E1\"\n");
+  expect(0, folder, {"emit", "kink.toml", "--target", "modelica", "-o", "."});
+  if (has_python) CHECK(contains(simulated().out, "done"));
+}

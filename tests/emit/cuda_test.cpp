@@ -79,6 +79,9 @@ TEST_CASE("cuda: unsupported features are rejected") {
   };
   Example e = example("two", double_pendulum(), {"a", "b"}, {"m1", "m2", "L1", "L2", "g"});
   CHECK(said(e.program, e.context) == "");
+  emit::EmissionContext with_kink = e.context;
+  with_kink.jumps_in_time = true;
+  CHECK(said(e.program, with_kink).find("kink in time") != std::string::npos);
   program::Program changed = e.program;
   changed.contacts.emplace_back();
   CHECK(said(changed, e.context).find("contacts") != std::string::npos);

@@ -85,6 +85,10 @@ TEST_CASE("target modelica: what a flat model cannot state is refused by name") 
   e.context.samples.push_back({"clock", 0.1, 0, {}, {}});
   CHECK_THROWS_WITH_AS(emit::emit(e.program, e.context, "modelica"), doctest::Contains("the sample 'clock'"), Error);
   e.context.samples.clear();
+  e.context.jumps_in_time = true;
+  CHECK_THROWS_WITH_AS(emit::emit(e.program, e.context, "modelica"), doctest::Contains("the jump of velocities"),
+                       Error);
+  e.context.jumps_in_time = false;
   e.program.contacts.push_back({{}, "floor"});
   CHECK_THROWS_WITH_AS(emit::emit(e.program, e.context, "modelica"), doctest::Contains("the contact 'floor'"), Error);
 }

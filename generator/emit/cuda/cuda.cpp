@@ -58,6 +58,12 @@ std::vector<EmittedFile> emit_cuda(const program::Program& program, const Emissi
     throw Error("emit", {}, "the target cuda integrates without events, which contacts need for their changes of mode",
                 "use the target c or cpp with eom::integrate_modes, or take the contacts out");
   }
+  if (context.jumps_in_time)
+    throw Error(
+        "emit", {},
+        "the target cuda integrates without impulses, and a prescribed motion has a kink in time, where velocities "
+        "may jump",
+        "use the target cpp with --with run, or make the motion smooth");
   const Dialect dialect = template_dialect();
   const std::string name = mangled_id(context.id);
   const ModelNames names = model_names(program, context);

@@ -196,6 +196,8 @@ void require_smooth(const program::Program& program, const EmissionContext& cont
   for (const EventDescription& event : context.events) {
     if (!event.reset.set.empty()) refuse_statement(fmt::format("the reset at the event '{}'", event.name), remedy);
   }
+  if (context.jumps_in_time)
+    refuse_statement("the jump of velocities at a kink in time of a prescribed motion", remedy);
   if (!context.samples.empty()) refuse_statement(fmt::format("the sample '{}'", context.samples.front().name), remedy);
 }
 

@@ -75,6 +75,12 @@ std::string outcomes() {
                             eom::name(Outcome::max_steps), eom::name(Outcome::diverged));
 }
 
+/// Lines of `simulate` where velocities may jump.
+constexpr const char* refuse_impulses =
+    "    raise NotImplementedError(\"a prescribed motion has a kink in time, where velocities may jump, and simulate "
+    "has \"\n"
+    "                              \"no impulses: use run, emitted with --with run\")\n";
+
 /// Values for the skeletons that depend on the floating-point type.
 std::vector<std::pair<std::string, std::string>> number_values(bool single) {
   if (!single) {
@@ -109,6 +115,7 @@ std::vector<EmittedFile> emit_python(const program::Program& program, const Emis
                                                              {"banner", banner(program, context, "# ", "# ", "")},
                                                              {"functions_of_c", c_function_declarations()},
                                                              {"outcomes", outcomes()},
+                                                             {"impulses", context.jumps_in_time ? refuse_impulses : ""},
                                                              {"resets", context.has_resets() ? "True" : "False"}};
   const std::vector<std::pair<std::string, std::string>> numbers = number_values(context.single_error.has_value());
   values.insert(values.end(), numbers.begin(), numbers.end());
