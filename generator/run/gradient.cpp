@@ -354,7 +354,8 @@ void require_outputs(const RunRequest& request, const std::vector<std::string>& 
 Gradients integrate_gradients(const RunRequest& request, const RunResult& motion, const GradientRequest& wanted) {
   require_derivatives(request, motion);
   if (!request.code.contact_set.empty())
-    refuse_derivative("forces of contacts are solved for at every evaluation: --sensitivity has derivatives of such runs");
+    refuse_derivative(
+        "forces of contacts are solved for at every evaluation: --sensitivity has derivatives of such runs");
   require_outputs(request, wanted.outputs);
   Gradients result;
   result.solver = derivative_solver(motion.solver);

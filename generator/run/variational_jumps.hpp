@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What interrupts a run, for the derivatives s of its state along directions of change (the formulas are in
-// variational.hpp): samples and kinks at times, surfaces of kinks, resets at events, changes of contacts, the end. In: a run,
-// directions, the state x with every s. Out: x and every s behind the interruption.
+// variational.hpp): samples and kinks at times, surfaces of kinks, resets at events, changes of contacts, the end. In:
+// a run, directions, the state x with every s. Out: x and every s behind the interruption.
 #pragma once
 
 #include <eom/events/integrate.hpp>
