@@ -18,4 +18,8 @@ Model& Model::operator=(const Model&) = default;
 Model& Model::operator=(Model&&) noexcept = default;
 Model::~Model() = default;
 
+NodeId Force::acceleration() const {
+  return effects.size() == 1 && effects[0].load_type == Effect::LoadType::acceleration ? effects[0].value : no_node;
+}
+
 }  // namespace eomgen::model

@@ -193,10 +193,6 @@ NodeId Force::value(std::string_view key) const {
   return found == nullptr ? no_node : found->value;
 }
 
-NodeId Force::acceleration() const {
-  return effects.size() == 1 && effects[0].load_type == Effect::LoadType::acceleration ? effects[0].value : no_node;
-}
-
 SourceLocation Model::where(const Span& span) const { return locate(file, lines, span); }
 
 const Scene& Model::scene(const std::string& name) const {
