@@ -158,7 +158,7 @@ TEST_CASE("equilibria: contacts are open at the start and at the points") {
 TEST_CASE("equilibria: time-dependent equations, contacts and invalid holds are refused with a remedy") {
   const Folder folder;
   CHECK(contains(expect(2, folder, {"equilibria", "P1_spherical_pendulum_varying"}).err, "eomgen linearize"));
-  CHECK(contains(expect(2, folder, {"equilibria", "stick_slip_belt"}).err, "linearise a copy"));
+  CHECK(contains(expect(2, folder, {"equilibria", "stick_slip_belt"}).err, "take a copy of the model"));
   CHECK(
       contains(expect(2, folder, {"equilibria", "R10_lagrange_top", "--hold", "thta=1"}).err, "did you mean 'theta'?"));
   CHECK(contains(expect(2, folder, {"equilibria", "R10_lagrange_top", "--hold", "psi=1"}).err, "it is ignorable"));
