@@ -188,6 +188,7 @@ def julia(path):
         if head or condition or loop:
             depth += 1
             ends.append("block")
+            body.append("  " * depth + "pass")  # an empty block is one of Julia too
     if ends or depth or module is None:
         raise SyntaxError("the module does not end")
     names = dict(JULIA)
