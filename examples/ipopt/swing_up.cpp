@@ -61,7 +61,7 @@ Problem::State motion_end(const std::vector<double>& z, const Problem::State& st
   return x;
 }
 
-/// Where the derivatives come from.
+/// The source of the derivatives.
 struct Mode {
   const char* name;
   Derivatives derivatives;

@@ -11,7 +11,7 @@
 
 namespace eomgen {
 
-/// Derivatives of the end x1 of a step, exact for the method. Matrices are stored by columns. What is null is not
+/// Derivatives of the end x1 of a step, exact for the method. Matrices are stored by columns. Null pointers are not
 /// computed. Arrays must not overlap with arguments.
 struct StepDerivatives {
   double* x = nullptr;           // dx1/dx: N x N

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the two ways to derivatives of the end of a run share (sensitivity.hpp, gradient.hpp): which runs have
+// The common parts of the two ways to derivatives of the end of a run (sensitivity.hpp, gradient.hpp): which runs have
 // derivatives, the method and options of their integration, the comparison with the run.
 #pragma once
 

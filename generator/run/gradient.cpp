@@ -13,6 +13,7 @@
 
 #include "run/central_differences.hpp"
 #include "run/derivative_run.hpp"
+#include "run/directional_derivative.hpp"
 #include "run/methods.hpp"
 #include "run/trajectory.hpp"
 #include "run/variational_jumps.hpp"
@@ -182,6 +183,7 @@ class GradientRun {
   /// Appends the value of an output and its gradient to end.x. False: an integration failed.
   bool backward(const std::string& output, const std::vector<double>& extended, const eom::Options& options,
                 eom::Result& end) {
+    enter(std::get<Piece>(history_.back()));  // an output before this one has gone back to the start
     std::vector<double> gradient;
     w_ = end_slopes(output, end.t, extended, end.x, gradient);
     for (auto at = history_.rbegin(); at != history_.rend(); ++at) {
@@ -216,14 +218,14 @@ class GradientRun {
     const auto what = [&] { return fmt::format("the output '{}' has no slope at the end", output); };
     for (std::size_t i = 0; i < n_; ++i) {
       unit[i] = 1;
-      by_state[i] = jumps_.along(t, own, 0, unit, what, value)[0];
+      by_state[i] = derivative_along(scene_, t, own, 0, unit, what, value)[0];
       unit[i] = 0;
     }
     // The end moves: s there, and the change of its time, follow the s before.
     const double* const s = x.data() + n_;
     const double* const dt = x.data() + n_ * (1 + directions_.size());
     const bool moves = std::any_of(dt, dt + directions_.size(), [](double change) { return change != 0; });
-    const double rate = moves ? jumps_.along(t, own, 1, std::vector<double>(n_, 0.0), what, value)[0] : 0;
+    const double rate = moves ? derivative_along(scene_, t, own, 1, std::vector<double>(n_, 0.0), what, value)[0] : 0;
     std::vector<double> w(n_ + scene_.parameters.size() + driven_.size(), 0.0);
     for (std::size_t i = 0; i < n_; ++i) w[i] = product(by_state.data(), s + i * n_, n_) + rate * dt[i];
     for (std::size_t d = 0; d < count_; ++d) {
@@ -266,9 +268,14 @@ class GradientRun {
     return found.value[0];
   }
 
-  bool backward_through(const Piece& piece, eom::Options options, eom::Result& end) {
+  /// Evaluations are in the segment and the mode of the piece from here on.
+  void enter(const Piece& piece) {
     jumps_.equations().enter(piece.segment);
     jumps_.equations().context.model.set_mode(piece.mode);
+  }
+
+  bool backward_through(const Piece& piece, eom::Options options, eom::Result& end) {
+    enter(piece);
     options.step_bounds = {};  // they describe times in ascending order
     options.quadratures = w_.size() - n_;
     for (std::size_t k = piece.last; k-- > piece.first;) {

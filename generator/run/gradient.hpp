@@ -44,7 +44,7 @@ struct Gradients {
   std::string estimate_note;
 };
 
-/// What gradients need besides a run. All have to outlive the call.
+/// The request for gradients of a run. All members have to outlive the call.
 struct GradientRequest {
   const std::vector<Direction>& directions;
   const std::vector<std::string>& outputs;  // of the code, or states

@@ -17,12 +17,6 @@ constexpr double relative_difference = 1e-3;  // of the state
 constexpr std::array<std::pair<double, double>, 4> order_four{
     {{2, -1.0 / 12}, {-2, 1.0 / 12}, {1, 8.0 / 12}, {-1, -8.0 / 12}}};
 
-double largest_size(const std::vector<double>& values) {
-  double size = 0;
-  for (const double v : values) size = std::max(size, std::abs(v));
-  return size;
-}
-
 }  // namespace
 
 class VariationalRun::Run {
@@ -108,8 +102,8 @@ class VariationalRun::Run {
     for (std::size_t d = 0; d < directions_.size(); ++d) {
       const std::vector<double> s(at.begin() + static_cast<std::ptrdiff_t>((d + 1) * n_),
                                   at.begin() + static_cast<std::ptrdiff_t>((d + 2) * n_));
-      const double size = largest_size(s);
-      const double h = size > 0 ? relative_difference * std::max(largest_size(own), scene_.atol) / size : 0;
+      const double size = largest_magnitude(s);
+      const double h = size > 0 ? relative_difference * std::max(largest_magnitude(own), scene_.atol) / size : 0;
       for (const auto& [offset, weight] : order_four) {
         if (size == 0) break;
         for (std::size_t i = 0; i < n_; ++i) state[i] = own[i] + offset * h * s[i];

@@ -15,27 +15,8 @@ namespace {
 
 using eom::hybrid::Breakpoint;
 
-constexpr int smaller_differences = -4, most_differences = 8;  // powers of 2; number of the differences tried
-constexpr double continuous = 1e-10;                           // of f: a smaller jump is rounding
-constexpr double impulse = 1e-9;                               // of the state: a smaller change is rounding
-
-double largest(const std::vector<double>& values) {
-  double size = 0;
-  for (const double v : values) size = std::max(size, std::abs(v));
-  return size;
-}
-
-/// Whether slopes by narrower differences are those by wider ones, but for their rounding. Far from the point a
-/// function may be as smooth, with another slope.
-bool agree(const Slopes& wider, const Slopes& narrower, const std::vector<double>& middle, double step) {
-  constexpr double tolerance = 1e-6, rounding = 1e-13;
-  const double error = rounding * largest(middle) / step;
-  for (std::size_t i = 0; i < middle.size(); ++i) {
-    const double allowed = tolerance * std::abs(narrower.value[i]) + error;
-    if (!(std::abs(wider.value[i] - narrower.value[i]) <= allowed)) return false;
-  }
-  return true;
-}
+constexpr double continuous = 1e-10;  // of f: a smaller jump is rounding
+constexpr double impulse = 1e-9;      // of the state: a smaller change is rounding
 
 }  // namespace
 
@@ -184,10 +165,11 @@ void VariationalJumps::change_by_impulse(const std::vector<double>& x, const std
                        direction.name);
   };
   const std::vector<double> of_scene = own_slopes(d, after, beside, what);
-  const std::vector<double> of_state = along(0, own, 0, sensitivity(x, d), what, [&](double, std::vector<double> at) {
-    cross(own_, at);
-    return at;
-  });
+  const std::vector<double> of_state =
+      derivative_along(scene_, 0, own, 0, sensitivity(x, d), what, [&](double, std::vector<double> at) {
+        cross(own_, at);
+        return at;
+      });
   for (std::size_t i = 0; i < n_; ++i) out[(d + 1) * n_ + i] = direction.scale * (of_state[i] + of_scene[i]);
 }
 
@@ -209,56 +191,21 @@ void VariationalJumps::change_by_samples(const std::vector<DueSample>& due, eom:
       take_samples(in_segment(*neighbour), due, total.t, beside.back());
     }
     const std::vector<double> of_scene = own_slopes(d, after, beside, what);
-    const std::vector<double> of_state = along(total.t, own, dt[d] / direction.scale, sensitivity(x, d), what,
-                                               [&](double at, std::vector<double> state) {
-                                                 take_samples(own_, due, at, state);
-                                                 return state;
-                                               });
+    const std::vector<double> of_state =
+        derivative_along(scene_, total.t, own, dt[d] / direction.scale, sensitivity(x, d), what,
+                         [&](double at, std::vector<double> state) {
+                           take_samples(own_, due, at, state);
+                           return state;
+                         });
     for (std::size_t i = 0; i < n_; ++i) total.x[(d + 1) * n_ + i] = direction.scale * (of_state[i] + of_scene[i]);
   }
   std::copy(after.begin(), after.end(), total.x.begin());
 }
 
-std::vector<double> VariationalJumps::along(double t, const std::vector<double>& x, double dt,
-                                            const std::vector<double>& dx, const What& what,
-                                            const Values& values) const {
-  const std::vector<double> middle = values(t, x);
-  if (largest(dx) == 0 && dt == 0) return std::vector<double>(middle.size(), 0.0);
-  double step = std::ldexp(1.0, std::ilogb(widest_step(x, dt, dx)));
-  std::optional<Slopes> wider;
-  for (int attempt = 0; attempt < most_differences; ++attempt) {
-    step = std::ldexp(step, smaller_differences);
-    std::vector<std::vector<double>> beside;
-    for (const double offset : difference_offsets(step)) {
-      std::vector<double> at = x;
-      for (std::size_t i = 0; i < n_; ++i) at[i] += offset * dx[i];
-      beside.push_back(values(t + offset * dt, std::move(at)));
-    }
-    Slopes found = slopes(middle, beside, step);
-    if (wider && found.smooth && agree(*wider, found, middle, step)) return wider->value;
-    wider.reset();
-    if (found.smooth) wider = std::move(found);
-  }
-  refuse_derivative(what());
-}
-
-/// The components that move, and the time, by as much as they are.
-double VariationalJumps::widest_step(const std::vector<double>& x, double dt, const std::vector<double>& dx) const {
-  constexpr double moves = 1e-8;  // of the largest change: less is rounding
-  const double size = largest(dx), by_time = (scene_.t1 - scene_.t0) / std::abs(dt);
-  if (size == 0) return by_time;
-  double widest = 0;
-  for (std::size_t i = 0; i < n_; ++i) {
-    if (std::abs(dx[i]) > moves * size) widest = std::max(widest, std::abs(x[i] / dx[i]));
-  }
-  if (widest * size <= scene_.atol) widest = std::max(largest(x), scene_.atol) / size;
-  return dt == 0 ? widest : std::min(widest, by_time);
-}
-
 /// Derivatives along the scenes beside that of the run. beside: the values in each.
 std::vector<double> VariationalJumps::own_slopes(std::size_t d, const std::vector<double>& middle,
                                                  const std::vector<std::vector<double>>& beside,
-                                                 const What& what) const {
+                                                 const Described& what) const {
   if (beside.empty()) return std::vector<double>(middle.size(), 0.0);
   Slopes found = slopes(middle, beside, directions_[d].step);
   if (!found.smooth) refuse_derivative(what());
@@ -266,8 +213,8 @@ std::vector<double> VariationalJumps::own_slopes(std::size_t d, const std::vecto
 }
 
 /// The derivative of values at (t, x) along direction d at fixed t and x: by everything in the scene.
-std::vector<double> VariationalJumps::by_scene(std::size_t d, double t, const std::vector<double>& x, const What& what,
-                                               const ValuesIn& values) {
+std::vector<double> VariationalJumps::by_scene(std::size_t d, double t, const std::vector<double>& x,
+                                               const Described& what, const ValuesIn& values) {
   std::vector<std::vector<double>> beside;
   for (const auto& neighbour : neighbours(d)) beside.push_back(values(in_segment(*neighbour), t, x));
   return own_slopes(d, values(own_, t, x), beside, what);
@@ -303,10 +250,11 @@ bool VariationalJumps::reset(const eom::EventPoint& point) {
     const std::vector<double> of_scene = own_slopes(d, after, beside, what);
     std::vector<double> s = sensitivity(x, d);
     for (std::size_t k = 0; k < n_; ++k) s[k] += before[k] * times[d];
-    const std::vector<double> of_state = along(t, own, times[d], s, what, [&](double at, std::vector<double> state) {
-      apply_reset(own_, i, at, state);
-      return state;
-    });
+    const std::vector<double> of_state =
+        derivative_along(scene_, t, own, times[d], s, what, [&](double at, std::vector<double> state) {
+          apply_reset(own_, i, at, state);
+          return state;
+        });
     for (std::size_t k = 0; k < n_; ++k) s_after.push_back(direction.scale * (of_state[k] + of_scene[k]));
   }
   std::copy(after.begin(), after.end(), point.x.begin());
@@ -330,7 +278,7 @@ bool VariationalJumps::cross_surface(const eom::EventPoint& point) {
   if (!known || !rhs(point.t, point.x.data(), after)) return true;  // the integration reports it
   double jump = 0;
   for (std::size_t i = 0; i < n_; ++i) jump = std::max(jump, std::abs(before[i] - after[i]));
-  if (jump <= continuous * largest(before)) return false;
+  if (jump <= continuous * largest_magnitude(before)) return false;
   for (std::size_t d = 0; d < directions_.size(); ++d) {
     context.model.set_mode(mode);
     const double by = directions_[d].scale * time_change(point.crossing.function, point.t, x, d);
@@ -369,7 +317,7 @@ bool VariationalJumps::change_contact(const eom::EventPoint& point) {
   for (std::size_t d = 0; d < directions_.size(); ++d) {
     std::vector<double> s = sensitivity(x, d);
     for (std::size_t k = 0; k < n_; ++k) s[k] += before[k] * times[d];
-    if (jump <= impulse * largest(own)) {
+    if (jump <= impulse * largest_magnitude(own)) {
       s.push_back(times[d]);
       slopes_after.push_back(std::move(s));
       continue;
@@ -384,9 +332,9 @@ bool VariationalJumps::change_contact(const eom::EventPoint& point) {
       beside.push_back(changed(*neighbour, t, own));
     }
     const std::vector<double> of_scene = own_slopes(d, after, beside, what);
-    std::vector<double> slope = along(t, own, times[d], s, what, [&](double at, std::vector<double> state) {
-      return changed(own_, at, std::move(state));
-    });
+    std::vector<double> slope =
+        derivative_along(scene_, t, own, times[d], s, what,
+                         [&](double at, std::vector<double> state) { return changed(own_, at, std::move(state)); });
     for (std::size_t k = 0; k <= n_; ++k) slope[k] += of_scene[k];
     slopes_after.push_back(std::move(slope));
   }
@@ -412,7 +360,7 @@ void VariationalJumps::start_contacts(const std::vector<double>& x) {
   own_.context.start_contacts(scene_.t0, own);
   double jump = 0;
   for (std::size_t i = 0; i < n_; ++i) jump = std::max(jump, std::abs(own[i] - before[i]));
-  if (jump > scene_.atol + scene_.rtol * largest(before)) refuse_derivative("the run starts with an impact");
+  if (jump > scene_.atol + scene_.rtol * largest_magnitude(before)) refuse_derivative("the run starts with an impact");
 }
 
 /// The change along direction d of the time at which an event function is 0. x: with every s.
@@ -428,10 +376,10 @@ double VariationalJumps::time_change(std::size_t function, double t, const std::
   };
   const auto own_value = [&](double at, const std::vector<double>& state) { return value(own_, at, state); };
   const double of_scene = by_scene(d, t, own, what, value)[0];
-  const double of_state = along(t, own, 0, sensitivity(x, d), what, own_value)[0];
+  const double of_state = derivative_along(scene_, t, own, 0, sensitivity(x, d), what, own_value)[0];
   std::vector<double> f(n_);
   if (!rhs(t, own.data(), f)) refuse_derivative(what());
-  const double dt = -(of_scene + of_state) / along(t, own, 1, f, what, own_value)[0];
+  const double dt = -(of_scene + of_state) / derivative_along(scene_, t, own, 1, f, what, own_value)[0];
   if (!std::isfinite(dt)) refuse_derivative(what());
   return dt;
 }

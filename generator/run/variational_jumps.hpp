@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What interrupts a run, for the derivatives s of its state along directions of change (the formulas are in
+// Interruptions of a run, for the derivatives s of its state along directions of change (the formulas are in
 // variational.hpp): samples and kinks at times, surfaces of kinks, resets at events, changes of contacts, the end. In:
 // a run, directions, the state x with every s. Out: x and every s behind the interruption.
 #pragma once
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "run/direction.hpp"
+#include "run/directional_derivative.hpp"
 #include "run/runner.hpp"
 #include "run/variational_equations.hpp"
 
@@ -47,13 +48,6 @@ class VariationalJumps {
   /// changes what is watched. False: x and s go on unchanged.
   bool cross_event(const eom::EventPoint& point);
 
-  /// A description for a refusal.
-  using What = std::function<std::string()>;
-  using Values = std::function<std::vector<double>(double t, std::vector<double> x)>;
-  /// The derivative of values along (dt, dx), by differences as wide as they are smooth.
-  std::vector<double> along(double t, const std::vector<double>& x, double dt, const std::vector<double>& dx,
-                            const What& what, const Values& values) const;
-
   /// The scenes beside that of the run along direction d, with the contacts in its modes.
   const std::vector<std::unique_ptr<VariationalEquations>>& neighbours(std::size_t d);
   /// A scene beside that of the run, in the segment and the mode of the run.
@@ -61,9 +55,8 @@ class VariationalJumps {
 
  private:
   using ValuesIn = std::function<std::vector<double>(VariationalEquations& in, double t, const std::vector<double>& x)>;
-  std::vector<double> by_scene(std::size_t d, double t, const std::vector<double>& x, const What& what,
+  std::vector<double> by_scene(std::size_t d, double t, const std::vector<double>& x, const Described& what,
                                const ValuesIn& values);
-  double widest_step(const std::vector<double>& x, double dt, const std::vector<double>& dx) const;
   std::vector<double> state_of(const std::vector<double>& x) const;
   std::vector<double> sensitivity(const std::vector<double>& x, std::size_t d) const;
   bool shift(eom::Result& total, const std::vector<double>& dt);
@@ -79,7 +72,7 @@ class VariationalJumps {
   void start_contacts(const std::vector<double>& x);
   double time_change(std::size_t function, double t, const std::vector<double>& x, std::size_t d);
   std::vector<double> own_slopes(std::size_t d, const std::vector<double>& middle,
-                                 const std::vector<std::vector<double>>& beside, const What& what) const;
+                                 const std::vector<std::vector<double>>& beside, const Described& what) const;
   std::optional<std::size_t> stopping_event() const;
   bool rhs(double t, const double* x, std::vector<double>& f) { return own_.context.rhs(t, x, f.data()) == 0; }
 

@@ -46,6 +46,15 @@ void falls_to(const Folder& folder, const std::string& text, const std::string& 
   CHECK(touch.t == doctest::Approx(std::sqrt(2 * (start - height) / g)).epsilon(1e-9));
 }
 
+/// `check` refuses the model, with a message that contains this.
+void refused(const std::string& text, const char* what) {
+  const Folder folder;
+  folder.write("model.toml", text);
+  const ChildResult result = expect(2, folder, {"check", "model.toml"});
+  CHECK(contains(result.err, what));
+  CHECK(contains(result.err, "remedy: "));
+}
+
 }  // namespace
 
 TEST_CASE("shapes: a falling body touches the ground where its shape has its lowest point, and keeps its energy") {
@@ -112,13 +121,6 @@ TEST_CASE("shapes: a ball leaves a sphere at two thirds of the height of its cen
 }
 
 TEST_CASE("shapes: unknown kinds, wrong sizes and missing keys are refused with a remedy") {
-  const Folder folder;
-  const auto refused = [&](const std::string& text, const char* what) {
-    folder.write("model.toml", text);
-    const ChildResult result = expect(2, folder, {"check", "model.toml"});
-    CHECK(contains(result.err, what));
-    CHECK(contains(result.err, "remedy: "));
-  };
   refused(falling("torus = \"R\""), "names no shape");
   refused(falling("capsule = \"R\""), "gives the sizes of the capsule as");
   refused(falling("capsule = [\"R\"]"), "gives 1 sizes of the capsule");
@@ -192,13 +194,6 @@ TEST_CASE("impacts: without friction Stronge's, Poisson's and Newton's laws agre
 }
 
 TEST_CASE("impacts: Stronge's law is refused for slip in two directions, and for simultaneous impacts") {
-  const Folder folder;
-  const auto refused = [&](const std::string& text, const char* what) {
-    folder.write("model.toml", text);
-    const ChildResult result = expect(2, folder, {"check", "model.toml"});
-    CHECK(contains(result.err, what));
-    CHECK(contains(result.err, "remedy: "));
-  };
   refused(falling_rod("law = \"stronge\"\norder = \"simultaneous\"", 0.2, 0.5), "one contact at a time");
   std::string ball = falling("sphere = \"R\"");
   ball.replace(ball.find("restitution = 1"), 15,

@@ -6,29 +6,12 @@
 #include <cmath>
 #include <tuple>
 
+#include "oscillator.hpp"
 #include "program.hpp"
 
 using namespace eomgen::test;
 
 namespace {
-
-const char* const free_oscillator = R"toml(format = 1
-[parameters]
-m = "2 kg"
-k = "8 N/m"
-A = "0.3 m"
-half = "k/2"
-[coordinates]
-x = {}
-[energy]
-kinetic = "m*x_dot^2/2"
-potential = "half*x^2"
-[scene.default]
-initial = { x = "A", x_dot = "0.1" }
-t = [0, 3]
-rtol = 1e-11
-atol = 1e-12
-)toml";
 
 Json gradients(const Folder& folder, Words words) { return document(folder, std::move(words))["gradients"]; }
 
@@ -59,7 +42,7 @@ void compare(const Folder& folder, const std::string& model, const std::string& 
 
 TEST_CASE("gradient: that of an oscillator agrees with its closed form, within its estimate") {
   const Folder folder;
-  folder.write("model.toml", free_oscillator);
+  folder.write("model.toml", oscillator_text);
   const Json found = gradients(folder, {"run", "model.toml", "--gradient", "x,energy", "--by", "k,m,A,x_dot"});
   const double m = 2, k = 8, A = 0.3, v = 0.1, t = 3, w = std::sqrt(k / m), c = std::cos(w * t), s = std::sin(w * t);
   const double by_w = -A * t * s + v * t * c / w - v * s / (w * w);  // of x = A cos wt + v/w sin wt
@@ -90,16 +73,23 @@ TEST_CASE("gradient: adjoint and variational equations agree on models with ever
   compare(folder, "S5_double_pendulum", "theta1,theta2_dot", "m1,m2,L1,theta1", 1e-6,
           {"--rtol", "1e-11", "--t-end", "3"});
   const std::string particle = "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"x\", 0, 0]\n";
-  const auto line = [&](const std::string& lines, const std::string& force, const std::string& scene) {
-    folder.write("line.toml", "format = 1\n[parameters]\nm = 2\nk = 8\ntau = 1.3\nw = 2\n" + lines +
-                                  "[coordinates]\nx = {}\n" + particle + "[[force]]\non = \"P\"\nforce = \"(" + force +
-                                  ")*E1\"\n[scene.default]\nrtol = 1e-11\natol = 1e-12\n" + scene);
+  const auto line = [&](const std::string& force, const std::string& scene) {
+    folder.write("line.toml",
+                 "format = 1\n[parameters]\nm = 2\nk = 8\ntau = 1.3\nw = 2\n"
+                 "[coordinates]\nx = {}\n" +
+                     particle + "[[force]]\non = \"P\"\nforce = \"(" + force +
+                     ")*E1\"\n[scene.default]\nrtol = 1e-11\natol = 1e-12\n" + scene);
   };
   const std::string scene = "initial = { x = 0.3, x_dot = 0.2 }\nt = [\"-w/2\", 3]\n";
-  line("", "-k*x + if(t < tau, 1, -2)", scene);  // a kink at a time, a start that moves
+  line("-k*x + if(t < tau, 1, -2)", scene);  // a kink at a time, a start that moves
   compare(folder, "line.toml", "x,x_dot", "m,k,tau,w,x", 1e-7);
-  line("", "-k*x - 3*sign(x - tau/10)", scene);  // a surface of the state, where the force jumps
+  line("-k*x - 3*sign(x - tau/10)", scene);  // a surface of the state, where the force jumps
   compare(folder, "line.toml", "x,x_dot", "m,k,tau,w,x", 1e-7);
+  // Every output is in the mode of the end, whatever comes before it.
+  const Json run = document(
+      folder, {"run", "line.toml", "--gradient", "x,x_ddot", "--by", "k", "--output", "x_ddot", "--t-end", "0.1"});
+  CHECK(run["gradients"]["outputs"]["x_ddot"].get<double>() ==
+        doctest::Approx(run["final"]["x_ddot"].get<double>()).epsilon(1e-9));
 }
 
 TEST_CASE("gradient: inputs that depend on parameters, resets, ends by an event, impulses and samples") {
@@ -150,7 +140,7 @@ TEST_CASE("gradient: friction that sticks and slips") {
 
 TEST_CASE("gradient: refusals name the cause") {
   const Folder folder;
-  folder.write("model.toml", free_oscillator);
+  folder.write("model.toml", oscillator_text);
   CHECK(contains(expect(2, folder, {"run", "model.toml", "--by", "k"}).err, "--gradient"));
   CHECK(contains(expect(2, folder, {"run", "model.toml", "--gradient", "nothing"}).err, "nothing"));
   CHECK(contains(expect(2, folder, {"run", "model.toml", "--gradient", "x", "--by", "nothing"}).err, "nothing"));

@@ -5,28 +5,12 @@
 #include <cmath>
 #include <tuple>
 
+#include "oscillator.hpp"
 #include "program.hpp"
 
 using namespace eomgen::test;
 
 namespace {
-
-const char* const forced_oscillator = R"toml(format = 1
-[parameters]
-m = "2 kg"
-k = "8 N/m"
-A = "0.3 m"
-[coordinates]
-x = {}
-[energy]
-kinetic = "m*x_dot^2/2"
-potential = "k*x^2/2"
-[scene.default]
-initial = { x = "A", x_dot = "0.1" }
-t = [0, 3]
-rtol = 1e-11
-atol = 1e-12
-)toml";
 
 /// Derivative of the final state by a parameter, from four runs by a central difference of order 4.
 double by_runs(const Folder& folder, const std::string& model, const std::string& parameter, double value,
@@ -69,7 +53,7 @@ Json derivatives(const Folder& folder, const std::string& by) {
 
 TEST_CASE("sensitivity: those of an oscillator agree with its closed form, within their estimates") {
   const Folder folder;
-  folder.write("model.toml", forced_oscillator);
+  folder.write("model.toml", oscillator_text);
   const Json found = document(folder, {"run", "model.toml", "--sensitivity", "k,m,A,x,x_dot"})["sensitivities"];
   const double m = 2, k = 8, A = 0.3, v = 0.1, t = 3, w = std::sqrt(k / m), c = std::cos(w * t), s = std::sin(w * t);
   const double by_w = -A * t * s + v * t * c / w - v * s / (w * w);  // of x = A cos wt + v/w sin wt
@@ -413,7 +397,7 @@ atol = 1e-12
 
 TEST_CASE("sensitivity: values without derivative are refused with a remedy") {
   const Folder folder;
-  folder.write("model.toml", forced_oscillator);
+  folder.write("model.toml", oscillator_text);
   const auto refused = [&](const Words& words, const char* what) {
     const ChildResult result = expect(2, folder, words);
     CHECK(contains(result.err, what));

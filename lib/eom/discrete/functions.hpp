@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a step as a function takes and gives. In: functions of a model in the form of the C ABI (docs/abi.md), and the
-// arguments of a step. Out: the end of the step, and its derivatives. Matrices are stored by columns.
+// Arguments and results of a step as a function. In: functions of a model in the form of the C ABI (docs/abi.md), and
+// the arguments of a step. Out: the end of the step, and its derivatives. Matrices are stored by columns.
 #pragma once
 
 #include <cstddef>
@@ -35,7 +35,7 @@ struct Arguments {
   const int* mode = nullptr;  // docs/abi.md, "Modes"
 };
 
-/// Derivatives of the end x1 of a step. What is null is not computed. Arrays must not overlap with arguments.
+/// Derivatives of the end x1 of a step. Null pointers are not computed. Arrays must not overlap with arguments.
 struct Derivatives {
   double* x = nullptr;  // dx1/dx: N x N
   double* p = nullptr;  // dx1/dp: N x P; needs jac_p
