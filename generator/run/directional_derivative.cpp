@@ -47,8 +47,8 @@ double largest_magnitude(const std::vector<double>& values) {
 }
 
 std::vector<double> derivative_along(const Scene& scene, double t, const std::vector<double>& x, double dt,
-                                            const std::vector<double>& dx, const Described& what,
-                                            const FunctionOfState& values) {
+                                     const std::vector<double>& dx, const Described& what,
+                                     const FunctionOfState& values) {
   const std::vector<double> middle = values(t, x);
   if (largest_magnitude(dx) == 0 && dt == 0) return std::vector<double>(middle.size(), 0.0);
   double step = std::ldexp(1.0, std::ilogb(widest_step(scene, x, dt, dx)));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The derivative of functions of (t, x) along a direction, for states at which a run is interrupted. In: the functions, a
-// state, a direction. Out: their slopes by differences as wide as the functions are smooth.
+// The derivative of functions of (t, x) along a direction, for states at which a run is interrupted. In: the functions,
+// a state, a direction. Out: their slopes by differences as wide as the functions are smooth.
 #pragma once
 
 #include <functional>
@@ -18,8 +18,8 @@ double largest_magnitude(const std::vector<double>& values);
 using Described = std::function<std::string()>;
 using FunctionOfState = std::function<std::vector<double>(double t, std::vector<double> x)>;
 
-/// d/de of values(t + e dt, x + e dx) at e = 0. Narrower differences have to agree with wider ones. scene: whose span and
-/// tolerances scale them. Throws Error{stage "run"} with `what` if the values are not smooth.
+/// d/de of values(t + e dt, x + e dx) at e = 0. Narrower differences have to agree with wider ones. scene: whose span
+/// and tolerances scale them. Throws Error{stage "run"} with `what` if the values are not smooth.
 std::vector<double> derivative_along(const Scene& scene, double t, const std::vector<double>& x, double dt,
                                      const std::vector<double>& dx, const Described& what,
                                      const FunctionOfState& values);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "oscillator.hpp"
+#include "displaced_oscillator.hpp"
 #include "program.hpp"
 
 using namespace eomgen::test;
@@ -42,7 +42,7 @@ void compare(const Folder& folder, const std::string& model, const std::string& 
 
 TEST_CASE("gradient: that of an oscillator agrees with its closed form, within its estimate") {
   const Folder folder;
-  folder.write("model.toml", oscillator_text);
+  folder.write("model.toml", displaced_oscillator);
   const Json found = gradients(folder, {"run", "model.toml", "--gradient", "x,energy", "--by", "k,m,A,x_dot"});
   const double m = 2, k = 8, A = 0.3, v = 0.1, t = 3, w = std::sqrt(k / m), c = std::cos(w * t), s = std::sin(w * t);
   const double by_w = -A * t * s + v * t * c / w - v * s / (w * w);  // of x = A cos wt + v/w sin wt
@@ -140,7 +140,7 @@ TEST_CASE("gradient: friction that sticks and slips") {
 
 TEST_CASE("gradient: refusals name the cause") {
   const Folder folder;
-  folder.write("model.toml", oscillator_text);
+  folder.write("model.toml", displaced_oscillator);
   CHECK(contains(expect(2, folder, {"run", "model.toml", "--by", "k"}).err, "--gradient"));
   CHECK(contains(expect(2, folder, {"run", "model.toml", "--gradient", "nothing"}).err, "nothing"));
   CHECK(contains(expect(2, folder, {"run", "model.toml", "--gradient", "x", "--by", "nothing"}).err, "nothing"));

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "oscillator.hpp"
+#include "displaced_oscillator.hpp"
 #include "program.hpp"
 
 using namespace eomgen::test;
@@ -53,7 +53,7 @@ Json derivatives(const Folder& folder, const std::string& by) {
 
 TEST_CASE("sensitivity: those of an oscillator agree with its closed form, within their estimates") {
   const Folder folder;
-  folder.write("model.toml", oscillator_text);
+  folder.write("model.toml", displaced_oscillator);
   const Json found = document(folder, {"run", "model.toml", "--sensitivity", "k,m,A,x,x_dot"})["sensitivities"];
   const double m = 2, k = 8, A = 0.3, v = 0.1, t = 3, w = std::sqrt(k / m), c = std::cos(w * t), s = std::sin(w * t);
   const double by_w = -A * t * s + v * t * c / w - v * s / (w * w);  // of x = A cos wt + v/w sin wt
@@ -397,7 +397,7 @@ atol = 1e-12
 
 TEST_CASE("sensitivity: values without derivative are refused with a remedy") {
   const Folder folder;
-  folder.write("model.toml", oscillator_text);
+  folder.write("model.toml", displaced_oscillator);
   const auto refused = [&](const Words& words, const char* what) {
     const ChildResult result = expect(2, folder, words);
     CHECK(contains(result.err, what));

@@ -5,7 +5,7 @@
 namespace eomgen::test {
 
 /// A mass on a spring, from x = A.
-inline constexpr const char* oscillator_text = R"toml(format = 1
+inline constexpr const char* displaced_oscillator = R"toml(format = 1
 [parameters]
 m = "2 kg"
 k = "8 N/m"
