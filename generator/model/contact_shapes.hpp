@@ -20,8 +20,9 @@ struct BodyShape {
                                      const std::string& n);
 };
 
-/// The lowest point of a circle of radius R about e3, from its centre. It has none while e3 is along the normal.
-inline std::string lowest_on_rim(const std::string& body, const std::string& radius, const std::string& n) {
+/// The highest point of a circle about e3, from its centre; the lowest one is opposite. There is none while e3 is along
+/// the normal.
+inline std::string highest_on_rim(const std::string& body, const std::string& radius, const std::string& n) {
   return fmt::format("{0}*unit({2} - dot({2}, {1}.e3)*{1}.e3)", radius, body, n);
 }
 
@@ -36,7 +37,7 @@ inline const std::array<BodyShape, 6>& body_shapes() {
       {"disk",
        {"radius"},
        [](const std::string& b, const Sizes& s, const std::string& n) -> Sizes {
-         return {"-" + lowest_on_rim(b, s[0], n)};
+         return {"-" + highest_on_rim(b, s[0], n)};
        }},
       {"capsule",  // two half spheres, whose centres are a length apart
        {"radius", "length"},
@@ -47,14 +48,14 @@ inline const std::array<BodyShape, 6>& body_shapes() {
       {"cylinder",
        {"radius", "length"},
        [](const std::string& b, const Sizes& s, const std::string& n) -> Sizes {
-         return {fmt::format("{1}/2*{0}.e3 - {2}", b, s[1], lowest_on_rim(b, s[0], n)),
-                 fmt::format("-{1}/2*{0}.e3 - {2}", b, s[1], lowest_on_rim(b, s[0], n))};
+         return {fmt::format("{1}/2*{0}.e3 - {2}", b, s[1], highest_on_rim(b, s[0], n)),
+                 fmt::format("-{1}/2*{0}.e3 - {2}", b, s[1], highest_on_rim(b, s[0], n))};
        }},
       {"cone",  // homogeneous, its tip towards e3
        {"radius", "height"},
        [](const std::string& b, const Sizes& s, const std::string& n) -> Sizes {
          return {fmt::format("3/4*{1}*{0}.e3", b, s[1]),
-                 fmt::format("-{1}/4*{0}.e3 - {2}", b, s[1], lowest_on_rim(b, s[0], n))};
+                 fmt::format("-{1}/4*{0}.e3 - {2}", b, s[1], highest_on_rim(b, s[0], n))};
        }},
       {"ellipsoid",  // of three half axes along e1, e2, e3
        {"a", "b", "c"},
