@@ -117,6 +117,7 @@ bool may_jump_in_time(const system::EquationSystem& s) {
 std::vector<Table> narrow_functions(const system::EquationSystem& s, Tails tails) {
   std::vector<Ref> roots;
   for (const auto* part : {&s.M, &s.f, &s.A, &s.b, &s.gamma}) roots.insert(roots.end(), part->begin(), part->end());
+  for (const system::FirstOrderState& state : s.states) roots.push_back(state.rate);
   const SymbolResolver variables = run_variables(s);
   std::vector<Table> result;
   std::set<Ref> seen;

@@ -249,7 +249,7 @@ std::vector<Residual> Oracle::dalembert_residuals(const State& state, const std:
       sums[i].add(-force * f[i], cln::abs(force * f[i]) + least * cln::abs(f[i]));
     }
   }
-  if (margin != nullptr) margin->kink = std::min(margin->kink, at.margin().kink);
+  if (margin != nullptr) margin->add(at.margin());
   return sums;
 }
 
@@ -307,7 +307,7 @@ ConstraintValues Oracle::constraint_values(const State& state, KinkMargin* margi
     }
     values.psi_ddot.push_back(second);
   }
-  if (margin != nullptr) margin->kink = std::min(margin->kink, at.margin().kink);
+  if (margin != nullptr) margin->add(at.margin());
   return values;
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "verify/argument.hpp"
 
@@ -175,22 +176,54 @@ Jet Interpreter::derivative(const Node& node) {
   return near.scalar(node.args[0]).slope(near.level(), 0);
 }
 
-bool Interpreter::less(const Jet& a, const Jet& b) {
+/// Whether a node has the same value in every state, as the start of a joint has.
+bool Interpreter::is_constant(NodeId root) const {
+  std::set<NodeId> seen;
+  std::vector<NodeId> open{root};
+  while (!open.empty()) {
+    const NodeId id = open.back();
+    open.pop_back();
+    if (id == model::no_node || !seen.insert(id).second) continue;
+    const Node& node = model_.arena[id];
+    switch (node.op) {
+      case Op::number:
+      case Op::pi: break;
+      case Op::definition: open.push_back(model_.definitions[node.index].expression); break;
+      case Op::add:
+      case Op::subtract:
+      case Op::negate:
+      case Op::multiply:
+      case Op::divide:
+      case Op::power:
+      case Op::conditional:
+      case Op::call: open.insert(open.end(), node.args.begin(), node.args.end()); break;
+      default: return false;
+    }
+  }
+  return true;
+}
+
+void Interpreter::observe_kink(const Node& node, double distance) {
+  if (margin_ == nullptr || !(distance < margin_->kink)) return;
+  const bool compares = node.op == Op::conditional || node.fn == model::Fn::min || node.fn == model::Fn::max;
+  if (is_constant(node.args[0]) && (!compares || is_constant(node.args[1]))) return;
+  *margin_ = {distance, node.span.line};
+}
+
+bool Interpreter::less(const Node& node) {
+  const Jet a = scalar(node.args[0]), b = scalar(node.args[1]);
   const double x = cln::double_approx(a.real()), y = cln::double_approx(b.real());
-  const double scale = std::max({std::fabs(x), std::fabs(y), 1e-300});
-  if (margin_ != nullptr) margin_->kink = std::min(margin_->kink, std::fabs(x - y) / scale);
+  observe_kink(node, std::fabs(x - y) / std::max({std::fabs(x), std::fabs(y), 1e-300}));
   return a.real() < b.real();
 }
 
-Jet Interpreter::conditional(const Node& node) {
-  return less(scalar(node.args[0]), scalar(node.args[1])) ? scalar(node.args[2]) : scalar(node.args[3]);
-}
+Jet Interpreter::conditional(const Node& node) { return less(node) ? scalar(node.args[2]) : scalar(node.args[3]); }
 
 Jet Interpreter::call(const Node& node) {
   using model::Fn;
   const Jet x = scalar(node.args[0]);
   const auto sign = [&]() -> int {
-    if (margin_ != nullptr) margin_->kink = std::min(margin_->kink, std::fabs(cln::double_approx(x.real())));
+    observe_kink(node, std::fabs(cln::double_approx(x.real())));
     return cln::zerop(x.real()) ? 0 : cln::minusp(x.real()) ? -1 : 1;
   };
   switch (node.fn) {
@@ -213,7 +246,7 @@ Jet Interpreter::call(const Node& node) {
     case Fn::max: break;
   }
   const Jet y = scalar(node.args[1]);
-  return less(x, y) == (node.fn == Fn::min) ? x : y;
+  return less(node) == (node.fn == Fn::min) ? x : y;
 }
 
 Jet Interpreter::extension(const model::Force& spring) {

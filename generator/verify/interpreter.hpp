@@ -43,6 +43,11 @@ struct Environment {
 /// The least relative distance of a state from a kink (abs, sign, min, max, if) so far.
 struct KinkMargin {
   double kink = 1;
+  std::uint32_t line = 0;  // of the nearest kink in the file; 0: of none
+
+  void add(const KinkMargin& other) {
+    if (other.kink < kink) *this = other;
+  }
 };
 
 class Interpreter {
@@ -88,7 +93,9 @@ class Interpreter {
   bool names(std::uint32_t place, const model::Node& coordinate) const;
   Vector tangent(std::uint32_t place, const model::Node& coordinate, bool relative);  // dr/dq
   Vector dual(std::uint32_t place, const model::Node& coordinate);                    // grad q
-  bool less(const Jet& a, const Jet& b);
+  bool is_constant(model::NodeId root) const;
+  void observe_kink(const model::Node& node, double distance);
+  bool less(const model::Node& node);  // args[0] < args[1]
   [[noreturn]] void refuse(const model::Node& node, const char* what) const;
   std::unique_ptr<Interpreter> child(Environment environment) const;
 

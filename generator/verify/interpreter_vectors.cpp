@@ -70,7 +70,7 @@ Vector Interpreter::read_vector(const Node& node) {
     case Op::divide: return (Jet(1) / scalar(node.args[1])) * arg(0);
     case Op::cross: return cross(arg(0), arg(1));
     case Op::unit: return (Jet(1) / norm(arg(0), precision_)) * arg(0);
-    case Op::conditional: return arg(less(scalar(node.args[0]), scalar(node.args[1])) ? 2 : 3);
+    case Op::conditional: return arg(less(node) ? 2 : 3);
     case Op::total_derivative: return map_slope(with_time_slope().vector(node.args[0]), with_time_slope().level());
     case Op::partial_derivative: {
       Interpreter& near = by_leaf(model_.arena[node.args[1]]);

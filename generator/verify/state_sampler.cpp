@@ -4,6 +4,7 @@
 #include <cln/float.h>
 #include <cln/integer.h>
 #include <cln/rational.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,11 +16,12 @@ namespace eomgen::verify {
 namespace {
 
 // Initial spread of random values around the defaults and initial values; it narrows after rejections.
-constexpr double parameter_spread = 0.25;    // relative
-constexpr double coordinate_spread = 0.5;    // of the scale of its unit
-constexpr double angle_spread = 1.2;         // rad
-constexpr double range_margin = 0.05;        // of a chart's range, at either end: charts are singular there
-constexpr double longest_span = 100;         // s; later times add no new tests
+constexpr double parameter_spread = 0.25;  // relative
+constexpr double coordinate_spread = 0.5;  // of the scale of its unit
+constexpr double angle_spread = 1.2;       // rad
+constexpr double range_margin = 0.05;      // of a chart's range, at either end: charts are singular there
+constexpr double longest_span = 100;       // s; later times add no new tests
+constexpr const char* at_kink = "too near the kink";
 constexpr double kink_margin = 1e-6;         // so that rounding to binary64 cannot change the branch
 constexpr std::size_t patience = 12;         // attempts to close the same contacts before one of them is left open
 constexpr std::size_t inside_patience = 48;  // the same if they close, but never within the ranges
@@ -257,7 +259,8 @@ void StateSampler::require_smooth(const State& s) const {
   KinkMargin margin;
   const std::vector<Real> no_forces(oracle_.constraints().size(), Real(0));
   oracle_.dalembert_residuals(s, no_forces, &margin);
-  if (margin.kink < kink_margin) throw RejectedState("too near a kink");
+  if (margin.kink < kink_margin)
+    throw RejectedState(margin.line > 0 ? fmt::format("{} of line {}", at_kink, margin.line) : at_kink);
 }
 
 // Whether the closed contacts cause the failure; if so, another set of contacts is tried.
@@ -339,11 +342,17 @@ void StateSampler::reject(const std::string& why) {
   if (++rejections_ % std::max<std::size_t>(1, often * few / rows) == 0) spread_ *= 0.8;
   if (rejections_ <= cap_) return;
   std::string reasons;
-  for (const auto& [reason, count] : rejected_)
+  std::size_t most = 0;
+  bool by_kink = false;
+  for (const auto& [reason, count] : rejected_) {
     reasons += (reasons.empty() ? "" : ", ") + reason + " (" + std::to_string(count) + ")";
+    if (count > most) most = count, by_kink = reason.starts_with(at_kink);
+  }
   throw Error("verify", SourceLocation{oracle_.model().file, 0, 0, 1, ""},
               "no states were found at which the equations can be checked: " + reasons,
-              "look at the ranges of the coordinates, the constraints and the start of the default scene",
+              by_kink
+                  ? "if the constraints hold this quantity at its kink, leave the term out; friction is written as dry"
+                  : "look at the ranges of the coordinates, the constraints and the start of the default scene",
               ErrorKind::check);
 }
 

@@ -68,6 +68,17 @@ std::string message(const ChildResult& result) {
   return result.in_time ? "no message" : "out of time";
 }
 
+/// Whether the constraints hold a rate at zero, whose sign is then not determined.
+bool is_sign_of_zero(const std::string& said, const std::string& text) {
+  static const std::string at = "too near the kink of line ";
+  const std::size_t found = said.find(at);
+  if (found == std::string::npos) return false;
+  std::istringstream lines(text);
+  std::string line;
+  for (int k = std::atoi(said.c_str() + found + at.size()); k > 0 && std::getline(lines, line);) --k;
+  return line.find("sign(q") != std::string::npos;
+}
+
 class Attempt {
  public:
   Attempt(const std::string& program, const std::string& folder, const Limits& limits)
@@ -75,13 +86,14 @@ class Attempt {
 
   Trial operator()(const std::string& text) {
     std::ofstream(folder_ + "/m.toml", std::ios::binary) << text;
+    text_ = text;
     if (!command("check", {}) || limits_.only_checked) return trial_;
     command("derive", {"--show", "all"});
     command("verify", {"--no-compile", "--points", "3"});
     if (!limits_.moved) return trial_;
     if (command("run", {})) {
       inspect_run();
-      inspect_sensitivity(text);
+      inspect_sensitivity();
     }
     command("linearize", {});
     return trial_;
@@ -105,6 +117,8 @@ class Attempt {
     if (result_.status == 0) return true;
     const std::string said = message(result_);
     if (result_.status == 2 && (name != "derive") && among(said, refusals())) {
+      trial_.refusal = said;
+    } else if (result_.status == 1 && is_sign_of_zero(said, text_)) {
       trial_.refusal = said;
     } else if (result_.status == 3 && name == "run" && reported_outcome()) {
       return false;
@@ -146,11 +160,11 @@ class Attempt {
   }
 
   /// The derivatives of the end by the first parameter, against differences of runs. A refusal by name is no finding.
-  void inspect_sensitivity(const std::string& text) {
+  void inspect_sensitivity() {
     const std::string key = "\np1 = ";
-    const std::size_t at = text.find(key);
+    const std::size_t at = text_.find(key);
     if (at == std::string::npos) return;
-    const double p = std::strtod(text.c_str() + at + key.size(), nullptr);
+    const double p = std::strtod(text_.c_str() + at + key.size(), nullptr);
     const std::size_t before = trial_.findings.size();
     const Json found = tight_run({"--sensitivity", "p1"});
     if (result_.status == 2 && result_.err.find("internal") == std::string::npos) trial_.findings.resize(before);
@@ -179,7 +193,7 @@ class Attempt {
     }
   }
 
-  std::string program_, folder_;
+  std::string program_, folder_, text_;
   Limits limits_;
   Trial trial_;
   ChildResult result_;

@@ -9,6 +9,7 @@
 #include "analysis/inverse.hpp"
 #include "analysis/steady.hpp"
 #include "support/folders.hpp"
+#include "support/run_text.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
@@ -244,4 +245,17 @@ TEST_CASE("freedom: the attitude follows from a given angular velocity, in angle
   }
   for (const char* cosine : {"e11", "e12", "e33", "reaction.one", "reaction.three"})
     CHECK(angles.final(cosine) == doctest::Approx(parameters.final(cosine)).epsilon(1e-8));
+}
+
+TEST_CASE("freedom: energies below what the tolerances of the states resolve are no open balance") {
+  // The start satisfies the constraint to 2e-16, and so the energy of 0 there is one of 2e-15.
+  for (const char* x : {"-1.2", "-2"}) {
+    CAPTURE(std::string(x));
+    const test::FinishedRun run = test::run_text(
+        "steep", std::string("[coordinates]\nx = {}\nz = {}\n[[particle]]\nname = \"P\"\nmass = 1\nposition = "
+                             "[\"x\", 0, \"z\"]\n[[force]]\ngravity = \"-9.81*E3\"\n[[constraint]]\nname = "
+                             "\"c\"\nholonomic = \"z - exp(30*x)\"\n[scene.default]\nt = [0, 1]\ninitial = { x = ") +
+                     x + " }\n");
+    CHECK(run.simulation.result.outcome == eom::Outcome::done);
+  }
 }

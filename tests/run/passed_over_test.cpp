@@ -6,6 +6,7 @@
 #include <cmath>
 #include <eom/registry.hpp>
 #include <numbers>
+#include <sstream>
 
 #include "support/run_text.hpp"
 
@@ -144,6 +145,44 @@ TEST_CASE("passed over: barriers that are narrow in the state reflect a particle
     fixed.solver = "rk4";
     fixed.step = 0.29;  // no step ends at 3
     CHECK(pipeline::rerun(finished.simulation, fixed).estimate_note.find("narrow in the state") != std::string::npos);
+  }
+}
+
+TEST_CASE("passed over: the estimate counts narrow forces below the tolerances that bound steps") {
+  // The particle crosses the force at x = 0, and changes its speed by 2 w/speed there.
+  for (const double width : {1e-8, 1e-9}) {
+    for (const char* start : {"1", "0.7", "0.913"}) {
+      CAPTURE(width);
+      CAPTURE(std::string(start));
+      std::ostringstream text;
+      text << "[parameters]\nw = " << width
+           << "\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\n[[force]]\ngeneralized = { x = "
+              "\"-1/sqrt(1 + (x/w)^2)^3\" }\n[scene.default]\nt = [0, 4]\ninitial = { x = "
+           << start << ", x_dot = -1 }\n";
+      const test::FinishedRun finished = test::run_text("passed", text.str());
+      const run::RunResult& result = finished.simulation.result;
+      CHECK(result.outcome == eom::Outcome::done);
+      const double speed = std::sqrt(1 + 4 * width), error = std::abs(finished.final("x_dot") + speed);
+      const double x0 = std::atof(start), error_x = std::abs(finished.final("x") + speed * (4 - x0));
+      const double estimate = test::value_of(result.error_estimate, "x_dot");
+      CHECK(error <= estimate + 1e-15);
+      CHECK(error_x <= test::value_of(result.error_estimate, "x") + 1e-15);
+      CHECK(estimate <= 3e-8 + 20 * width);  // a tolerance that bounds steps, or the size of the change
+    }
+  }
+}
+
+TEST_CASE("passed over: rates of states of first order are narrow too") {
+  for (const char* rate : {"1/sqrt(1 + (x/w)^2)^3", "exp(-(x/w)^2)", "1/(1 + (x/w)^2)"}) {
+    CAPTURE(std::string(rate));
+    const test::FinishedRun finished = test::run_text(
+        "narrow_rate",
+        std::string("[parameters]\nw = 1e-6\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\n[[state]]\n"
+                    "name = \"z\"\nrate = \"") +
+            rate + "\"\ninitial = 0\n[scene.default]\nt = [0, 4]\ninitial = { x = 1, x_dot = -1 }\n");
+    CHECK(finished.simulation.result.outcome == eom::Outcome::done);
+    const double whole = rate[0] == 'e' ? std::sqrt(std::acos(-1.0)) : rate[2] == 's' ? 2 : std::acos(-1.0);
+    CHECK(std::abs(finished.final("z") / 1e-6 - whole) < 2e-3);
   }
 }
 

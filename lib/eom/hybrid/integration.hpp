@@ -77,6 +77,7 @@ class Integration {
   const std::optional<MissedForce>& missed_narrow_force() const { return missed_narrow_force_; }
   /// The first time at which a narrow force in a step could not be excluded.
   std::optional<double> narrow_forces_unresolved_from() const { return narrow_.unresolved_from(); }
+  const NarrowForces& narrow_forces() const { return narrow_; }
 
  private:
   friend class ExternalSteps;  // whose caller integrates the smooth parts

@@ -2,7 +2,8 @@
 // Forces that are narrow in the state. A barrier exp(-(x/w)^2) or 1/(1 + (x/w)^2) far narrower than a step lies between
 // the points at which the step evaluates the equations, and its tails are below the tolerance. In: functions that may
 // be narrow, a step with its dense output, the right-hand side. Out: a shorter step, if the bounds of a function allow
-// values that no sample has and the path of the step violates the equations at such a point.
+// values that no sample has and the path of the step violates the equations at such a point; else the impulse of what
+// the steps went over, which no repeated run shows that goes over it too.
 #pragma once
 
 #include <algorithm>
@@ -19,8 +20,8 @@ namespace eom::hybrid {
 
 class NarrowForces {
  public:
-  explicit NarrowForces(const Problem& problem) : n_(problem.n()), variables_(step_variables(problem)) {
-    const std::size_t variables = 1 + problem.code->layout().size() + problem.inputs.size();
+  explicit NarrowForces(const Problem& problem) : layout_(problem.code->layout()), variables_(step_variables(problem)) {
+    const std::size_t variables = 1 + layout_.size() + problem.inputs.size();
     for (const expressions::Table& function : problem.bounded.narrow) {
       Function added{{function, problem.parameters}, has_tails(function) ? of_tails : of_values};
       if (varies(added.code, variables)) functions_.push_back(std::move(added));
@@ -38,13 +39,26 @@ class NarrowForces {
     const double h = std::abs(step.t1 - step.t0);
     double first = 1;
     bool has_tails = false;
+    hidden_.assign(layout_.size(), 0);
     for (const Function& function : functions_) {
       const double at = first_hidden_value(function, step, sampling).value_or(1);
       if (at < first) first = at, has_tails = function.visible == of_tails;
     }
     if (first < 1) return {first * h, has_tails};
     if (sampling.series && unsatisfied(step, sampling, 1, 1)) return {h / 2};
+    count_passed_over(step);
     return {std::numeric_limits<double>::infinity()};
+  }
+
+  /// Adds to an error estimate of the state at time t what the steps so far went over, as a motion without forces
+  /// carries it on.
+  void add_passed_over(double t, std::vector<double>& estimate) const {
+    if (passed_over_.empty() || estimate.empty()) return;
+    for (std::size_t i = layout_.rates_begin(); i < layout_.size(); ++i) {
+      estimate[i] += passed_over_[i].change;
+      if (layout_.is_rate(i))
+        estimate[i - layout_.rates_begin()] += std::abs(passed_over_[i].change * t - passed_over_[i].change_times_t);
+    }
   }
 
   /// Start of the first step since the last call for which the bounds were too wide to decide.
@@ -57,11 +71,15 @@ class NarrowForces {
   static constexpr double everything = 1e100;
   static constexpr double of_values = 1e-3;   // beyond the samples: variation of smooth functions between them
   static constexpr double of_tails = 10;      // the same of functions whose tails the error control sees
+  static constexpr double of_hidden = 1;      // the same once a step goes over a value, whose largest one counts
   static constexpr double any_state = 1e9;    // in the units of the model
   static constexpr double hardly = 1e3;       // a ratio of values
   static constexpr double of_tolerance = 30;  // the path inside a step is less accurate than its end
   static constexpr double difference = 1e-3;  // of a width, for slopes of the path
   static constexpr double nearest = 1e-3;     // of a box
+  static constexpr double narrow = 1.0 / 64;  // of a step: every method sees wider features, as part of its own error
+  static constexpr double rounding = 1e-12;   // of a state: slopes of the path by differences
+  static constexpr double largest_part = 2;   // an impulse by its value at one point and the width of the box around it
 
   struct Function {
     expressions::Code code;
@@ -102,6 +120,7 @@ class NarrowForces {
     // Every method evaluates the end points only.
     Interval seen =
         expressions::hull({value(open[0].first), value(open[0].first)}, {value(open[0].second), value(open[0].second)});
+    double visible = function.visible;
     for (std::size_t boxes = 0; !open.empty() && boxes < most_boxes; ++boxes) {
       const auto [a, b] = std::move(open.back());
       open.pop_back();
@@ -114,12 +133,13 @@ class NarrowForces {
       range.value = {bounded(range.value.low), bounded(range.value.high)};
       const auto shown = [&](double v) {
         const double largest = std::max(std::abs(seen.low), std::abs(seen.high)),
-                     room = std::max({seen.width(), function.visible * largest, nothing});
+                     room = std::max({seen.width(), visible * largest, nothing});
         return v >= seen.low - room && v <= seen.high + room;
       };
       if (shown(range.value.low) && shown(range.value.high)) continue;
       if (!shown(middle)) {
         if (unsatisfied(step, sampling, m.s, width)) return m.s;
+        if (width <= narrow) note_hidden(step), visible = std::min(visible, of_hidden);
         // The slope vanishes at the top of a feature, so its sides are tested, however steep they are.
         for (double beside = width / 4; beside > width * nearest; beside /= 4) {
           if (unsatisfied(step, sampling, m.s - beside, beside) || unsatisfied(step, sampling, m.s + beside, beside))
@@ -138,8 +158,29 @@ class NarrowForces {
     return std::nullopt;
   }
 
-  /// Whether the accelerations of the step's path at s differ from the equations by more than the tolerances, if this
-  /// holds for `width` of the step.
+  struct PassedOver {
+    double change = 0, change_times_t = 0;  // of a component of the state
+  };
+
+  /// Keeps the changes that `unsatisfied` found last.
+  void note_hidden(const StepView& step) const {
+    for (std::size_t i = layout_.rates_begin(); i < layout_.size(); ++i) {
+      const double size = std::max(std::abs(step.x0[i]), std::abs(step.x1[i]));
+      if (change_[i] > rounding * size) hidden_[i] = std::max(hidden_[i], change_[i]);
+    }
+  }
+
+  void count_passed_over(const StepView& step) const {
+    if (std::all_of(hidden_.begin(), hidden_.end(), [](double change) { return change == 0; })) return;
+    passed_over_.resize(hidden_.size());
+    for (std::size_t i = 0; i < hidden_.size(); ++i) {
+      passed_over_[i].change += largest_part * hidden_[i];
+      passed_over_[i].change_times_t += largest_part * hidden_[i] * step.t0;
+    }
+  }
+
+  /// Whether the rates of the step's path at s differ from the equations by more than the tolerances, if this holds for
+  /// `width` of the step. If not, change_ is by how much the state changes less on the path.
   bool unsatisfied(const StepView& step, const Sampling& sampling, double s, double width) const {
     const double h = step.t1 - step.t0, reach = difference * width, from = std::max(0.0, s - reach),
                  to = std::min(1.0, s + reach);
@@ -154,23 +195,26 @@ class NarrowForces {
     state(from, before_);
     state(to, after_);
     if (sampling.derivative(step.t0 + s * h, x_.data(), dx_.data()) != 0) return true;
-    const StateLayout layout{n_};
-    for (std::size_t i = layout.rates_begin(); i < layout.first_order_begin(); ++i) {
+    change_.assign(layout_.size(), 0);
+    for (std::size_t i = layout_.rates_begin(); i < layout_.size(); ++i) {
       const double slope = (after_[i] - before_[i]) / ((to - from) * h);
       // For a one-sided difference the curvature of the path counts as part of the difference.
       const double size = std::max(std::abs(step.x0[i]), std::abs(step.x1[i]));
       const double bend = from < s && to > s ? 0 : difference * std::abs(step.x1[i] - step.x0[i]);
-      if (!(std::abs(dx_[i] - slope) * width * std::abs(h) <=
-            of_tolerance * (sampling.atol + sampling.rtol * size) + bend))
-        return true;
+      change_[i] = std::abs(dx_[i] - slope) * width * std::abs(h);
+      if (!(change_[i] <= of_tolerance * (sampling.atol + sampling.rtol * size) + bend)) return true;
+      change_[i] = std::max(0.0, change_[i] - bend);
     }
     return false;
   }
 
-  std::size_t n_;
+  StateLayout layout_;
   StepVariables variables_;
   std::vector<Function> functions_;
   mutable std::optional<double> unresolved_from_;
+  mutable std::vector<PassedOver> passed_over_;  // per component of the state; empty: nothing
+  mutable std::vector<double> hidden_;           // in this step: the largest change per component
+  mutable std::vector<double> change_;           // at the last point
   mutable std::vector<double> x_, before_, after_, dx_;
 };
 

@@ -113,13 +113,21 @@ inline RunResult run(const Problem& problem) {
     EndErrorEstimator(problem, method_named(result.solver).order, own, options, adequacy ? &*adequacy : nullptr,
                       passes_pole, result.error)
         .run();
+    integration.narrow_forces().add_passed_over(result.t, result.error.states);
+    for (const double estimate : result.error.states) result.error.max = std::max(result.error.max, estimate);
   }
   // An estimate that saw a force with tails states its effect.
   const EstimateWarning::Kind found = result.error.warning.kind;
   if (missed && missed->has_tails && found != EstimateWarning::Kind::impulse &&
       found != EstimateWarning::Kind::tighter_run_differs && found != EstimateWarning::Kind::sensitive_start)
     report_missed_force();
-  if (ended) require_balance(problem, result);
+  if (ended) {
+    require_balance(problem, result, monitor.energy_defect(), end.x, [&](const std::vector<double>& x) {
+      std::vector<double> outputs(problem.code->output_names.size());
+      context.outputs(at, x.data(), outputs);
+      return outputs[problem.energy];
+    });
+  }
   result.detail = sentence(result.reason);
   result.error.note = sentence(result.error.warning);
   return result;

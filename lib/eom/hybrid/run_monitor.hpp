@@ -168,6 +168,15 @@ class RunMonitor {
     return at;
   }
 
+  /// The largest change of the energy beyond the work, in the units of the energy.
+  double energy_defect() const {
+    double defect = problem_.power ? balance_.max_abs_defect() : 0;
+    for (std::size_t i = 0; i < drifts_.size(); ++i) {
+      if (problem_.invariants[i].output == problem_.energy) defect = std::max(defect, drifts_[i].max_abs_drift());
+    }
+    return defect;
+  }
+
   void report(RunResult& result) const {
     result.events = events_;
     if (left_) {  // events in the step that left the range are discarded
