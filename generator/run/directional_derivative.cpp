@@ -13,11 +13,14 @@ namespace {
 
 constexpr int smaller_differences = -4, most_differences = 8;  // powers of 2; number of the differences tried
 
+constexpr double tolerance = 1e-6;  // of a slope
+
 /// Whether slopes by narrower differences are those by wider ones, but for their rounding. Far from the point a
-/// function may be as smooth, with another slope.
-bool agree(const Slopes& wider, const Slopes& narrower, const std::vector<double>& middle, double step) {
-  constexpr double tolerance = 1e-6, rounding = 1e-13;
-  const double error = rounding * largest_magnitude(middle) / step;
+/// function may be as smooth, with another slope. widest: of the differences; it tells which slopes are small.
+bool agree(const Slopes& wider, const Slopes& narrower, const std::vector<double>& middle, double step, double widest) {
+  constexpr double rounding = 1e-13;
+  const double largest = largest_magnitude(middle), error = rounding * largest / step;
+  if (error > tolerance * std::max(largest_magnitude(narrower.value), largest / widest)) return false;
   for (std::size_t i = 0; i < middle.size(); ++i) {
     const double allowed = tolerance * std::abs(narrower.value[i]) + error;
     if (!(std::abs(wider.value[i] - narrower.value[i]) <= allowed)) return false;
@@ -26,15 +29,21 @@ bool agree(const Slopes& wider, const Slopes& narrower, const std::vector<double
 }
 
 /// The components that move, and the time, by as much as they are.
-double widest_step(const Scene& scene, const std::vector<double>& x, double dt, const std::vector<double>& dx) {
-  constexpr double moves = 1e-8;  // of the largest change: less is rounding
-  const double size = largest_magnitude(dx), by_time = (scene.t1 - scene.t0) / std::abs(dt);
+double widest_step(const DifferenceScales& scales, const std::vector<double>& x, double dt,
+                   const std::vector<double>& dx) {
+  constexpr double moves = 1e-8;     // of the largest change: less is rounding
+  constexpr double no_scale = 1e-9;  // of the states of the run: a smaller state is near 0
+  constexpr double part = 1e-2;      // of the states of the run, where the state itself has no scale
+  const double size = largest_magnitude(dx), by_time = scales.span / std::abs(dt);
   if (size == 0) return by_time;
-  double widest = 0;
+  double widest = 0, typical = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    if (std::abs(dx[i]) > moves * size) widest = std::max(widest, std::abs(x[i] / dx[i]));
+    if (std::abs(dx[i]) <= moves * size) continue;
+    widest = std::max(widest, std::abs(x[i] / dx[i]));
+    typical = std::max(typical, std::max(std::abs(x[i]), scales.states[i]) / std::abs(dx[i]));
   }
-  if (widest * size <= scene.atol) widest = std::max(largest_magnitude(x), scene.atol) / size;
+  if (typical == 0) typical = std::max(1.0, largest_magnitude(scales.states)) / size;
+  if (widest <= no_scale * typical) widest = part * typical;
   return dt == 0 ? widest : std::min(widest, by_time);
 }
 
@@ -46,12 +55,18 @@ double largest_magnitude(const std::vector<double>& values) {
   return size;
 }
 
-std::vector<double> derivative_along(const Scene& scene, double t, const std::vector<double>& x, double dt,
+DifferenceScales::DifferenceScales(const Scene& scene, const RunResult& motion)
+    : span(scene.t1 - scene.t0), states(motion.state) {
+  for (double& state : states) state = std::abs(state);
+}
+
+std::vector<double> derivative_along(const DifferenceScales& scales, double t, const std::vector<double>& x, double dt,
                                      const std::vector<double>& dx, const Described& what,
                                      const FunctionOfState& values) {
   const std::vector<double> middle = values(t, x);
   if (largest_magnitude(dx) == 0 && dt == 0) return std::vector<double>(middle.size(), 0.0);
-  double step = std::ldexp(1.0, std::ilogb(widest_step(scene, x, dt, dx)));
+  double step = std::ldexp(1.0, std::ilogb(widest_step(scales, x, dt, dx)));
+  const double widest = step;
   std::optional<Slopes> wider;
   for (int attempt = 0; attempt < most_differences; ++attempt) {
     step = std::ldexp(step, smaller_differences);
@@ -62,7 +77,7 @@ std::vector<double> derivative_along(const Scene& scene, double t, const std::ve
       beside.push_back(values(t + offset * dt, std::move(at)));
     }
     Slopes found = slopes(middle, beside, step);
-    if (wider && found.smooth && agree(*wider, found, middle, step)) return wider->value;
+    if (wider && found.smooth && agree(*wider, found, middle, step, widest)) return wider->value;
     wider.reset();
     if (found.smooth) wider = std::move(found);
   }

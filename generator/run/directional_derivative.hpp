@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "run/scene.hpp"
+#include "run/runner.hpp"
 
 namespace eomgen::run {
 
@@ -18,9 +18,18 @@ double largest_magnitude(const std::vector<double>& values);
 using Described = std::function<std::string()>;
 using FunctionOfState = std::function<std::vector<double>(double t, std::vector<double> x)>;
 
-/// d/de of values(t + e dt, x + e dx) at e = 0. Narrower differences have to agree with wider ones. scene: whose span
-/// and tolerances scale them. Throws Error{stage "run"} with `what` if the values are not smooth.
-std::vector<double> derivative_along(const Scene& scene, double t, const std::vector<double>& x, double dt,
+/// The scales of differences: the span of the run, and the magnitudes of its states. They count for a state near 0,
+/// which has no scale of its own: a body at rest in the origin.
+struct DifferenceScales {
+  double span;
+  std::vector<double> states;
+
+  DifferenceScales(const Scene& scene, const RunResult& motion);
+};
+
+/// d/de of values(t + e dt, x + e dx) at e = 0. Narrower differences have to agree with wider ones. Throws Error{stage
+/// "run"} with `what` if the values are not smooth, or if rounding hides the slopes.
+std::vector<double> derivative_along(const DifferenceScales& scales, double t, const std::vector<double>& x, double dt,
                                      const std::vector<double>& dx, const Described& what,
                                      const FunctionOfState& values);
 

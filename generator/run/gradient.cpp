@@ -218,14 +218,14 @@ class GradientRun {
     const auto what = [&] { return fmt::format("the output '{}' has no slope at the end", output); };
     for (std::size_t i = 0; i < n_; ++i) {
       unit[i] = 1;
-      by_state[i] = derivative_along(scene_, t, own, 0, unit, what, value)[0];
+      by_state[i] = derivative_along(jumps_.scales(), t, own, 0, unit, what, value)[0];
       unit[i] = 0;
     }
     // The end moves: s there, and the change of its time, follow the s before.
     const double* const s = x.data() + n_;
     const double* const dt = x.data() + n_ * (1 + directions_.size());
     const bool moves = std::any_of(dt, dt + directions_.size(), [](double change) { return change != 0; });
-    const double rate = moves ? derivative_along(scene_, t, own, 1, std::vector<double>(n_, 0.0), what, value)[0] : 0;
+    const double rate = moves ? derivative_along(jumps_.scales(), t, own, 1, std::vector<double>(n_, 0.0), what, value)[0] : 0;
     std::vector<double> w(n_ + scene_.parameters.size() + driven_.size(), 0.0);
     for (std::size_t i = 0; i < n_; ++i) w[i] = product(by_state.data(), s + i * n_, n_) + rate * dt[i];
     for (std::size_t d = 0; d < count_; ++d) {

@@ -24,6 +24,7 @@ VariationalJumps::VariationalJumps(const RunRequest& request, const RunResult& m
                                    const std::vector<Direction>& directions)
     : scene_(request.scene),
       motion_(motion),
+      scales_(request.scene, motion),
       directions_(directions),
       own_(problem_of(request, solver), kink_times(request.scene)),
       n_(own_.problem.states()),
@@ -166,7 +167,7 @@ void VariationalJumps::change_by_impulse(const std::vector<double>& x, const std
   };
   const std::vector<double> of_scene = own_slopes(d, after, beside, what);
   const std::vector<double> of_state =
-      derivative_along(scene_, 0, own, 0, sensitivity(x, d), what, [&](double, std::vector<double> at) {
+      derivative_along(scales_, 0, own, 0, sensitivity(x, d), what, [&](double, std::vector<double> at) {
         cross(own_, at);
         return at;
       });
@@ -192,7 +193,7 @@ void VariationalJumps::change_by_samples(const std::vector<DueSample>& due, eom:
     }
     const std::vector<double> of_scene = own_slopes(d, after, beside, what);
     const std::vector<double> of_state =
-        derivative_along(scene_, total.t, own, dt[d] / direction.scale, sensitivity(x, d), what,
+        derivative_along(scales_, total.t, own, dt[d] / direction.scale, sensitivity(x, d), what,
                          [&](double at, std::vector<double> state) {
                            take_samples(own_, due, at, state);
                            return state;
@@ -251,7 +252,7 @@ bool VariationalJumps::reset(const eom::EventPoint& point) {
     std::vector<double> s = sensitivity(x, d);
     for (std::size_t k = 0; k < n_; ++k) s[k] += before[k] * times[d];
     const std::vector<double> of_state =
-        derivative_along(scene_, t, own, times[d], s, what, [&](double at, std::vector<double> state) {
+        derivative_along(scales_, t, own, times[d], s, what, [&](double at, std::vector<double> state) {
           apply_reset(own_, i, at, state);
           return state;
         });
@@ -291,12 +292,15 @@ bool VariationalJumps::cross_surface(const eom::EventPoint& point) {
 // (t, x)+ = J(t, x). Without an impulse J is the identity, and only f changes.
 bool VariationalJumps::change_contact(const eom::EventPoint& point) {
   const double t = point.t;
+  // Variational equations are not projected. A slip of the wrong sign by rounding would end at once.
+  if (own_.context.rows.size() > 0 && own_.context.projection(t, point.x.data()) != 0) return true;
   const std::vector<double> x(point.x.begin(), point.x.end()), own = state_of(x);
   std::vector<double> before(n_), behind(n_);
   if (!rhs(t, own.data(), before)) return true;  // the integration reports it
+  const ContactSnapshot modes = save_contacts(own_);
   std::vector<double> times;
   for (std::size_t d = 0; d < directions_.size(); ++d) times.push_back(time_change(point.crossing.function, t, x, d));
-  const ContactSnapshot modes = save_contacts(own_);
+  restore_contacts(own_, modes);  // slip speeds beside the motion are not observed ones
   std::optional<ContactSnapshot> next;
   bool same = true;
   const auto changed = [&](VariationalEquations& in, double at, std::vector<double> state) {
@@ -312,7 +316,11 @@ bool VariationalJumps::change_contact(const eom::EventPoint& point) {
   const std::vector<double> after = changed(own_, t, own);
   double jump = std::abs(after[n_] - t);
   for (std::size_t i = 0; i < n_; ++i) jump = std::max(jump, std::abs(after[i] - own[i]));
-  if (next->has_modes_of(modes) && jump == 0) return false;
+  if (next->has_modes_of(modes) && jump == 0) {
+    restore_contacts(own_, *next);  // what the contacts remember of this crossing
+    watch_contacts(own_, point.functions);
+    return false;
+  }
   std::vector<std::vector<double>> slopes_after;
   for (std::size_t d = 0; d < directions_.size(); ++d) {
     std::vector<double> s = sensitivity(x, d);
@@ -333,7 +341,7 @@ bool VariationalJumps::change_contact(const eom::EventPoint& point) {
     }
     const std::vector<double> of_scene = own_slopes(d, after, beside, what);
     std::vector<double> slope =
-        derivative_along(scene_, t, own, times[d], s, what,
+        derivative_along(scales_, t, own, times[d], s, what,
                          [&](double at, std::vector<double> state) { return changed(own_, at, std::move(state)); });
     for (std::size_t k = 0; k <= n_; ++k) slope[k] += of_scene[k];
     slopes_after.push_back(std::move(slope));
@@ -376,10 +384,10 @@ double VariationalJumps::time_change(std::size_t function, double t, const std::
   };
   const auto own_value = [&](double at, const std::vector<double>& state) { return value(own_, at, state); };
   const double of_scene = by_scene(d, t, own, what, value)[0];
-  const double of_state = derivative_along(scene_, t, own, 0, sensitivity(x, d), what, own_value)[0];
+  const double of_state = derivative_along(scales_, t, own, 0, sensitivity(x, d), what, own_value)[0];
   std::vector<double> f(n_);
   if (!rhs(t, own.data(), f)) refuse_derivative(what());
-  const double dt = -(of_scene + of_state) / derivative_along(scene_, t, own, 1, f, what, own_value)[0];
+  const double dt = -(of_scene + of_state) / derivative_along(scales_, t, own, 1, f, what, own_value)[0];
   if (!std::isfinite(dt)) refuse_derivative(what());
   return dt;
 }

@@ -29,6 +29,7 @@ class VariationalJumps {
   std::size_t states() const { return n_; }
   /// The segment between kinks in time, from start() on.
   std::size_t segment() const { return segment_; }
+  const DifferenceScales& scales() const { return scales_; }
   bool is_last_segment() const { return segment_ == own_.kinks.size() || own_.kinks[segment_].after >= motion_.t; }
   double segment_end() const { return is_last_segment() ? motion_.t : own_.kinks[segment_].before; }
   /// Which events and surfaces interrupt.
@@ -78,6 +79,7 @@ class VariationalJumps {
 
   const Scene& scene_;
   const RunResult& motion_;
+  DifferenceScales scales_;
   const std::vector<Direction>& directions_;
   VariationalEquations own_;
   std::size_t n_, segment_ = 0;

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sensitivities of every scene of every shipped model against central differences of runs.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "analysis/sensitivities.hpp"
+#include "error.hpp"
+#include "support/simulation.hpp"
+
+using namespace eomgen;
+using namespace eomgen::test;
+
+namespace {
+
+constexpr double rtol = 1e-12, atol = 1e-13;
+constexpr double agreement = 1e-5;  // relative; differences of two widths have to agree to a tenth of it
+constexpr std::size_t most_directions = 4;  // per scene: parameters together, then starts
+constexpr std::size_t most_states = 30;
+constexpr std::size_t most_steps = 10000;   // each difference takes four runs
+
+/// Changes of values by a common factor h.
+struct Change {
+  std::string name;
+  double value, scale;
+};
+using Direction = std::vector<Change>;
+
+std::vector<std::pair<std::string, std::string>> shipped_scenes() {
+  std::set<std::string> names;
+  for (const auto& file : std::filesystem::directory_iterator(std::filesystem::path(model_path("P1")).parent_path())) {
+    if (file.path().extension() == ".toml") names.insert(file.path().stem().string());
+  }
+  std::vector<std::pair<std::string, std::string>> scenes;
+  for (const std::string& name : names) {
+    const auto model = model_at(model_path(name));
+    for (const model::Scene& scene : model->scenes) scenes.emplace_back(name, scene.name);
+  }
+  return scenes;
+}
+
+class SceneTrial {
+ public:
+  SceneTrial(const std::string& model, const std::string& scene)
+      : request_(request_of(model, scene)),
+        simulation_(pipeline::simulate(request_)),
+        states_(pipeline::state_names(*simulation_.derived)) {}
+
+  bool is_done() const { return simulation_.result.outcome == eom::Outcome::done; }
+  eom::Outcome outcome() const { return simulation_.result.outcome; }
+  bool is_short() const {
+    return states_.size() <= most_states;
+  }
+
+  /// How many derivatives were compared. Derivatives that are refused by name, and differences that do not converge,
+  /// are not.
+  std::size_t compare() {
+    std::size_t compared = 0;
+    Direction parameters;
+    for (const Change& change : independent_parameters()) {
+      if (sensitivities({change.name})) parameters.push_back(change);
+    }
+    if (!parameters.empty()) compared += compare(parameters);
+    std::size_t directions = 1;
+    for (const Change& change : starts()) {
+      if (directions == most_directions) break;
+      if (!sensitivities({change.name})) continue;
+      ++directions;
+      compared += compare({change});
+    }
+    return compared;
+  }
+
+  const std::vector<std::string>& refusals() const { return refusals_; }
+
+ private:
+  static pipeline::SimulationRequest request_of(const std::string& model, const std::string& scene) {
+    pipeline::SimulationRequest request;
+    request.model = model_at(model_path(model));
+    request.scene = scene;
+    request.estimate = false;
+    request.max_steps = most_steps;
+    request.overrides.rtol = rtol;
+    request.overrides.atol = atol;
+    request.with = analysis::sensitivity_functions(*request.model);
+    return request;
+  }
+
+  std::vector<Change> independent_parameters() const {
+    const model::Model& m = *request_.model;
+    std::vector<Change> changes;
+    for (std::size_t i = 0; i < m.parameters.size(); ++i) {
+      if (m.parameters[i].initial_value_of || m.arena[m.parameters[i].value].op != model::Op::number) continue;
+      const double value = simulation_.scene.parameters[i], sign = changes.size() % 2 == 0 ? 1 : -1;
+      changes.push_back({m.parameters[i].name, value, sign * (value != 0 ? std::abs(value) : 1)});
+    }
+    return changes;
+  }
+
+  std::vector<Change> starts() const {
+    const model::Model& m = *request_.model;
+    std::vector<Change> changes;
+    for (std::size_t i = 0; i < m.coordinates.size(); ++i) {
+      changes.push_back({m.coordinates[i].name, simulation_.scene.q[i], 1});
+      changes.push_back({m.coordinates[i].name + "_dot", simulation_.scene.qdot[i], 1});
+    }
+    return changes;
+  }
+
+  std::optional<run::Sensitivities> sensitivities(const std::vector<std::string>& names) {
+    try {
+      return analysis::sensitivities(simulation_, request_, names);
+    } catch (const Error& error) {
+      refusals_.push_back(names.front() + ": " + error.what());
+      return std::nullopt;
+    }
+  }
+
+  std::optional<std::vector<double>> end(const Direction& direction, double h) {
+    run::Overrides overrides = request_.overrides;
+    for (const Change& change : direction)
+      overrides.values[change.name] = cln::rational(cln::cl_float(change.value + h * change.scale));
+    try {
+      const run::RunResult result = pipeline::rerun(simulation_, overrides, false);
+      if (result.outcome != eom::Outcome::done || result.events.size() != simulation_.result.events.size())
+        return std::nullopt;
+      return std::vector<double>(result.state.begin(),
+                                 result.state.begin() + static_cast<std::ptrdiff_t>(states_.size()));
+    } catch (const Error&) {
+      return std::nullopt;
+    }
+  }
+
+  std::optional<std::vector<double>> difference(const Direction& direction, double h) {
+    const auto up = end(direction, h), down = end(direction, -h);
+    if (!up || !down) return std::nullopt;
+    std::vector<double> slopes;
+    for (std::size_t i = 0; i < up->size(); ++i) slopes.push_back(((*up)[i] - (*down)[i]) / (2 * h));
+    return slopes;
+  }
+
+  std::size_t compare(const Direction& direction) {
+    std::vector<std::string> names;
+    for (const Change& change : direction) names.push_back(change.name);
+    request_.estimate = true;
+    const std::optional<run::Sensitivities> found = sensitivities(names);
+    request_.estimate = false;
+    if (!found || found->outcome != eom::Outcome::done) return 0;
+    std::vector<double> expected(states_.size()), error(states_.size());
+    for (std::size_t k = 0; k < direction.size(); ++k) {
+      for (std::size_t i = 0; i < states_.size(); ++i) {
+        expected[i] += direction[k].scale * found->list[k].value[i];
+        error[i] += std::abs(direction[k].scale * found->list[k].error[i]);
+      }
+    }
+    std::size_t compared = 0;
+    std::vector<bool> open(states_.size(), true);
+    for (const double h : {1e-4, 1e-5, 1e-6}) {
+      const auto wide = difference(direction, h), narrow = difference(direction, h / 3);
+      if (!wide || !narrow) continue;
+      double largest = 0, largest_state = 0;
+      for (const double state : simulation_.result.state) largest_state = std::max(largest_state, std::abs(state));
+      const double noise = 10 * rtol * largest_state / h;  // of runs
+      for (const double slope : *narrow) largest = std::max(largest, std::abs(slope));
+      for (std::size_t i = 0; i < states_.size(); ++i) {
+        const double scale = std::max(std::abs((*narrow)[i]), 1e-3 * largest) + 1e-6;
+        if (!open[i] || std::abs((*wide)[i] - (*narrow)[i]) > 0.1 * agreement * scale) continue;
+        CAPTURE(names.front());
+        CAPTURE(states_[i]);
+        CAPTURE(h);
+        CAPTURE((*narrow)[i]);
+        CAPTURE((*wide)[i]);
+        CAPTURE(expected[i]);
+        CHECK(std::abs((*narrow)[i] - expected[i]) <= agreement * scale + error[i] + noise);
+        open[i] = false;
+        ++compared;
+      }
+      if (std::none_of(open.begin(), open.end(), [](bool b) { return b; })) break;
+    }
+    return compared;
+  }
+
+  pipeline::SimulationRequest request_;
+  pipeline::Simulation simulation_;
+  std::vector<std::string> states_, refusals_;
+};
+
+}  // namespace
+
+TEST_CASE("sensitivities: those of every shipped scene agree with central differences of runs") {
+  std::size_t scenes = 0, without_end = 0, too_long = 0, without_slopes = 0, compared = 0;
+  for (const auto& [model, scene] : shipped_scenes()) {
+    if (getenv("ONLY") && model != getenv("ONLY")) continue;
+    std::printf("%s %s\n", model.c_str(), scene.c_str());
+    std::fflush(stdout);
+    CAPTURE(model);
+    CAPTURE(scene);
+    ++scenes;
+    std::optional<SceneTrial> trial;
+    try {
+      trial.emplace(model, scene);
+    } catch (const Error& e) {
+      ++without_end;
+      std::printf("%s %s ERR %s\n", model.c_str(), scene.c_str(), e.what());
+      continue;
+    }
+    if (!trial->is_done()) {
+      ++without_end;
+      std::printf("%s %s %d\n", model.c_str(), scene.c_str(), int(trial->outcome()));
+    } else if (!trial->is_short()) {
+      ++too_long;
+      std::printf("%s %s long\n", model.c_str(), scene.c_str());
+    } else if (const std::size_t n = trial->compare(); n > 0) {
+      compared += n;
+    } else {
+      ++without_slopes;
+      std::printf("%s %s none\n", model.c_str(), scene.c_str());
+      for (const auto& r : trial->refusals()) std::printf("    %s", r.c_str());
+    }
+  }
+  MESSAGE(scenes << " " << without_end << " " << too_long << " " << without_slopes << " " << compared);
+}
