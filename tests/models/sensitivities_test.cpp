@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <set>
 
 #include "analysis/sensitivities.hpp"
@@ -16,10 +17,11 @@ using namespace eomgen::test;
 
 namespace {
 
-constexpr double rtol = 1e-12, atol = 1e-13;
+constexpr double rtol = 1e-13, atol = 1e-14;
 constexpr double agreement = 1e-5;  // relative; differences of two widths have to agree to a tenth of it
 constexpr std::size_t most_directions = 4;  // per scene: parameters together, then starts
-constexpr std::size_t most_states = 30;
+constexpr std::size_t most_states = 30, most_states_of_starts = 8;
+constexpr std::size_t most_refusals = 3;
 constexpr std::size_t most_steps = 10000;   // each difference takes four runs
 
 /// Changes of values by a common factor h.
@@ -32,7 +34,9 @@ using Direction = std::vector<Change>;
 std::vector<std::pair<std::string, std::string>> shipped_scenes() {
   std::set<std::string> names;
   for (const auto& file : std::filesystem::directory_iterator(std::filesystem::path(model_path("P1")).parent_path())) {
-    if (file.path().extension() == ".toml") names.insert(file.path().stem().string());
+    const std::string name = file.path().stem().string();
+    const bool is_repeated = name.starts_with("R18_euler_") && name != "R18_euler_313";  // by other angles
+    if (file.path().extension() == ".toml" && !is_repeated) names.insert(name);
   }
   std::vector<std::pair<std::string, std::string>> scenes;
   for (const std::string& name : names) {
@@ -50,8 +54,7 @@ class SceneTrial {
         states_(pipeline::state_names(*simulation_.derived)) {}
 
   bool is_done() const { return simulation_.result.outcome == eom::Outcome::done; }
-  eom::Outcome outcome() const { return simulation_.result.outcome; }
-  bool is_short() const {
+  bool is_small() const {
     return states_.size() <= most_states;
   }
 
@@ -61,12 +64,13 @@ class SceneTrial {
     std::size_t compared = 0;
     Direction parameters;
     for (const Change& change : independent_parameters()) {
+      if (refusals_ == most_refusals) return 0;  // by the motion, whatever the value
       if (sensitivities({change.name})) parameters.push_back(change);
     }
     if (!parameters.empty()) compared += compare(parameters);
     std::size_t directions = 1;
     for (const Change& change : starts()) {
-      if (directions == most_directions) break;
+      if (directions == most_directions || states_.size() > most_states_of_starts) break;
       if (!sensitivities({change.name})) continue;
       ++directions;
       compared += compare({change});
@@ -74,7 +78,6 @@ class SceneTrial {
     return compared;
   }
 
-  const std::vector<std::string>& refusals() const { return refusals_; }
 
  private:
   static pipeline::SimulationRequest request_of(const std::string& model, const std::string& scene) {
@@ -113,8 +116,8 @@ class SceneTrial {
   std::optional<run::Sensitivities> sensitivities(const std::vector<std::string>& names) {
     try {
       return analysis::sensitivities(simulation_, request_, names);
-    } catch (const Error& error) {
-      refusals_.push_back(names.front() + ": " + error.what());
+    } catch (const Error&) {
+      ++refusals_;
       return std::nullopt;
     }
   }
@@ -171,8 +174,6 @@ class SceneTrial {
         CAPTURE(names.front());
         CAPTURE(states_[i]);
         CAPTURE(h);
-        CAPTURE((*narrow)[i]);
-        CAPTURE((*wide)[i]);
         CAPTURE(expected[i]);
         CHECK(std::abs((*narrow)[i] - expected[i]) <= agreement * scale + error[i] + noise);
         open[i] = false;
@@ -185,41 +186,36 @@ class SceneTrial {
 
   pipeline::SimulationRequest request_;
   pipeline::Simulation simulation_;
-  std::vector<std::string> states_, refusals_;
+  std::vector<std::string> states_;
+  std::size_t refusals_ = 0;
 };
 
 }  // namespace
 
-TEST_CASE("sensitivities: those of every shipped scene agree with central differences of runs") {
-  std::size_t scenes = 0, without_end = 0, too_long = 0, without_slopes = 0, compared = 0;
+TEST_CASE("sensitivities: those of the shipped scenes agree with central differences of runs") {
+  std::size_t scenes = 0, without_end = 0, without_slopes = 0, compared = 0;
   for (const auto& [model, scene] : shipped_scenes()) {
-    if (getenv("ONLY") && model != getenv("ONLY")) continue;
-    std::printf("%s %s\n", model.c_str(), scene.c_str());
-    std::fflush(stdout);
     CAPTURE(model);
     CAPTURE(scene);
     ++scenes;
     std::optional<SceneTrial> trial;
     try {
       trial.emplace(model, scene);
-    } catch (const Error& e) {
+    } catch (const Error&) {  // nothing is left to integrate, or the start is singular: shipped for other commands
       ++without_end;
-      std::printf("%s %s ERR %s\n", model.c_str(), scene.c_str(), e.what());
       continue;
     }
-    if (!trial->is_done()) {
+    if (!trial->is_done() || !trial->is_small()) {
       ++without_end;
-      std::printf("%s %s %d\n", model.c_str(), scene.c_str(), int(trial->outcome()));
-    } else if (!trial->is_short()) {
-      ++too_long;
-      std::printf("%s %s long\n", model.c_str(), scene.c_str());
     } else if (const std::size_t n = trial->compare(); n > 0) {
       compared += n;
     } else {
       ++without_slopes;
-      std::printf("%s %s none\n", model.c_str(), scene.c_str());
-      for (const auto& r : trial->refusals()) std::printf("    %s", r.c_str());
     }
   }
-  MESSAGE(scenes << " " << without_end << " " << too_long << " " << without_slopes << " " << compared);
+  // Those that end by another outcome, or take too many steps; those that slide in two directions, or whose contacts
+  // change in an order that depends on the values.
+  CHECK(without_end <= scenes / 10);
+  CHECK(without_slopes <= scenes / 6);
+  CHECK(compared >= 11 * scenes);
 }
