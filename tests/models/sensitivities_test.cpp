@@ -20,7 +20,7 @@ namespace {
 constexpr double rtol = 1e-13, atol = 1e-14;
 constexpr double agreement = 1e-5;  // relative; differences of two widths have to agree to a tenth of it
 constexpr std::size_t most_directions = 4;  // per scene: parameters together, then starts
-constexpr std::size_t most_states = 30, most_states_of_starts = 8;
+constexpr std::size_t most_states = 20, most_states_of_starts = 8;
 constexpr std::size_t most_refusals = 3;
 constexpr std::size_t most_steps = 10000;   // each difference takes four runs
 
