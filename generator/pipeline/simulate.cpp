@@ -12,6 +12,7 @@
 #include "error.hpp"
 #include "pipeline/beyond_range.hpp"
 #include "pipeline/bound_run.hpp"
+#include "pipeline/contact_outputs.hpp"
 #include "pipeline/reset_places.hpp"
 #include "program/kinks.hpp"
 #include "run/monitored_functions.hpp"
@@ -20,25 +21,6 @@ namespace eomgen::pipeline {
 namespace {
 
 using system::OutputKind;
-
-std::vector<run::ContactOutputs> contact_outputs(const system::EquationSystem& system) {
-  std::vector<run::ContactOutputs> result;
-  if (system.contacts.empty()) return result;
-  for (const system::Contact& contact : system.contacts) {
-    result.emplace_back().slopes.resize(contact.slip.size());
-    if (contact.unilateral) result.back().constraint = *contact.unilateral;
-  }
-  for (const system::Output& output : system.outputs) {
-    switch (output.kind) {
-      case OutputKind::slip: result[output.index].slip.push_back(output.name); break;
-      case OutputKind::friction_component: result[output.index].phi.push_back(output.name); break;
-      case OutputKind::slip_slope: result[output.index].slopes[output.part].push_back(output.name); break;
-      case OutputKind::restitution: result[output.index].restitution = output.name; break;
-      default: break;
-    }
-  }
-  return result;
-}
 
 /// The name of the magnitude of a conserved quantity; empty if it has none.
 std::string magnitude_of(const system::EquationSystem& system, std::size_t conserved) {
@@ -68,9 +50,7 @@ std::vector<std::string> code_outputs(const DerivedModel& derived, const run::Sc
     if (system::is_reaction(output.kind) || output.kind == OutputKind::redundant) add(output.name);
   }
   for (const run::ContactOutputs& contact : contact_outputs(system)) {
-    for (const auto* list : {&contact.slip, &contact.phi}) std::for_each(list->begin(), list->end(), add);
-    for (const std::vector<std::string>& slopes : contact.slopes) std::for_each(slopes.begin(), slopes.end(), add);
-    if (!contact.restitution.empty()) add(contact.restitution);
+    for (const std::string& name : output_names(contact)) add(name);
   }
   for (const std::string& name : scene.outputs) add(name);
   if (scene.t1 == scene.t0) {

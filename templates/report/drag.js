@@ -23,7 +23,7 @@ class Drag {
       for (let i = 0; i < n; ++i) largest = Math.max(largest, J[0][i] ** 2 + J[1][i] ** 2);
       if (largest === 0) return;
       const H = W.map((row, i) => row.map((w, j) => J[0][i] * J[0][j] + J[1][i] * J[1][j] + 1e-4 * largest * (w / (trace || 1) + (i === j ? 1e-4 : 0))));
-      const g = J[0].map((a, i) => a * d[0] + J[1][i] * d[1]), {psi, A} = live.constraintsAt(live.t0, x);
+      const g = J[0].map((a, i) => a * d[0] + J[1][i] * d[1]), {psi, A} = live.constraintsAt(live.t0, x, live.modeAt(live.t0, x));
       const change = smallestCorrection(H, A, Array.from(psi, (value) => -value), g), size = Math.hypot(...change);
       for (let i = 0; i < n; ++i) x[i] += change[i] * Math.min(1, 0.5 / (size || 1));
     }

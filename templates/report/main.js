@@ -3,7 +3,7 @@ const data = JSON.parse(document.getElementById("motion").textContent);
 const stage = document.getElementById("stage"), view = document.createElement("div"), canvas = document.createElement("canvas");
 const bar = document.createElement("div"), tools = document.createElement("div"), message = document.createElement("p");
 const live = data.live ? new Live(model, data.live, data) : null;
-const recorded = new Motion(data.t, data.x ? data.x.map((x) => Float64Array.from(x)) : null, data.y, live, data.events);
+const recorded = new Motion(data.t, data.x ? data.x.map((x) => Float64Array.from(x)) : null, data.y, live, data.events, []);
 let motion = recorded, pending = 0;
 
 canvas.id = "scene";
@@ -61,7 +61,7 @@ function run(play) {
     message.textContent = notice + (integration.outcome === "done" ? steps : steps + "; " + integration.outcome);
     if (integration.times.length > 1) {
       player.at = live.t0;
-      take(new Motion(integration.times, integration.states, null, live, integration.found), false, [["outcome", integration.outcome], ["steps", String(integration.steps)]]);
+      take(new Motion(integration.times, integration.states, null, live, integration.found, integration.modes), false, [["outcome", integration.outcome], ["steps", String(integration.steps)]]);
       player.play(play);
     }
   };
@@ -84,7 +84,7 @@ function grab(at) {
       pulled = true;
       const here = drag.place(x), p = scene.camera.project(here);
       drag.move(x, plus(here, scene.camera.lift(now[0] - p[0], now[1] - p[1])));
-      take(new Motion([live.t0, live.t1], [x, x].map((state) => Float64Array.from(state)), null, live, []), false, null);
+      take(new Motion([live.t0, live.t1], [x, x].map((state) => Float64Array.from(state)), null, live, [], []), false, null);
       player.jump(live.t0);
     },
     release: () => {

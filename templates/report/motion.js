@@ -1,6 +1,7 @@
 // A motion: rows of the original run, or of a run in the page. `at(t)` returns the values for drawings and plots.
 class Motion {
-  constructor(t, x, y, live, events) { Object.assign(this, {t, x, y, live, events}); }
+  // modes: of the contacts, from each row on.
+  constructor(t, x, y, live, events, modes) { Object.assign(this, {t, x, y, live, events, modes}); }
 
   row(t) {
     let low = 0, high = this.t.length - 1;
@@ -34,12 +35,12 @@ class Motion {
   }
 
   at(t) {
-    if (this.x) return this.live.outputs(t, this.state(t));
     const {k, s} = this.between(t);
+    if (!this.y) return this.live.outputs(t, this.state(t), this.modes[s < 1 ? k : k + 1]);
     return this.y[k].map((value, i) => (1 - s) * value + s * this.y[k + 1][i]);
   }
 
-  atRow(k) { return this.x ? this.live.outputs(this.t[k], this.x[k]) : this.y[k]; }
+  atRow(k) { return this.y ? this.y[k] : this.live.outputs(this.t[k], this.x[k], this.modes[k]); }
 
   // All rows for the drawing, computed once.
   drawn() {
@@ -48,6 +49,8 @@ class Motion {
   }
   curve(of) { return of.state ? this.x.map((x) => x[of.at]) : this.drawn().map((y) => y[of.at]); }
 }
+
+const onSurface = 1e-9;  // gaps up to this value are closed at a start that was placed by hand
 
 // Why a start is refused, by the code of `start`.
 const refusals = {5: "a value of the start is not finite", 7: "the start breaks a constraint", 8: "the start has a coordinate outside its range"};
@@ -60,6 +63,15 @@ class Live {
     this.code = code;
     this.kinds = code.info.constraint_kinds || [];
     this.m = this.constraints;
+    if (this.solved) Object.assign(this.solved, {contacts: code.info.contacts});
+    this.forces = this.solved ? new SolvedContacts(this, {rtol: 1e-8, atol: 1e-10}) : null;  // for outputs and rows
+    const all = this.solved ? this.solved.contacts : this.contacts;
+    this.contactCount = all.length;
+    this.contactOf = {};  // contacts that can open, by the index of their constraint
+    this.contacts.forEach((contact, j) => { if (contact.unilateral) this.contactOf[contact.constraint] = j; });
+    this.allOpen = this.solved ? all.map((contact) => ({...freshState(), mode: contact.unilateral ? 2 : 0}))
+      : all.length > 0 ? Int32Array.from({length: this.mode_size}, (_, j) => (j < all.length && all[j].unilateral ? 3 : 0)) : null;
+    this.open = [];  // contacts that are open at the start
     this.count = code.info.outputs.length;
     this.end = null;
     this.reset();
@@ -83,6 +95,7 @@ class Live {
     this.x.set(this.placed);
     if (this.meetPositions()) this.meetRates();
     else this.refusal = "the constraints cannot be met near this place";
+    if (this.allOpen) this.open = Array.from(this.modeAt(this.t0, this.x, onSurface)).slice(0, this.contactCount).map((entry) => (this.solved ? entry.mode === 2 : entry === 3));
     for (const [i, k] of this.starts) this.p[i] = this.x[k];
   }
 
@@ -96,9 +109,10 @@ class Live {
     }
     this.parameters.forEach((parameter, i) => { given[states + i] = parameter.moved ? 1 : 0; });
     given[states + count + 1] = this.end === null ? 0 : 1;
-    const code = this.code.start(given, t, x, p, null);
+    const open = this.allOpen ? new Int32Array(this.mode_size) : null, code = this.code.start(given, t, x, p, open);
     if (code !== 0) return refusals[code];
     if (!(t[1] > t[0])) return "the run would end at t = " + t[1].toPrecision(4) + " s, before its start at t = " + t[0].toPrecision(4) + " s";
+    if (open) this.open = Array.from(open.subarray(0, this.contactCount), (entry) => entry === 3);
     Object.assign(this, {x, p, t0: t[0], t1: t[1], sizes: new Float64Array(this.size_count)});
     const periods = new Float64Array(2 * this.samples.length);
     this.code.setup(this.t0, x, p, null, 0, this.sizes, periods);
@@ -106,25 +120,50 @@ class Live {
     return "";
   }
 
+  // Inputs of the scene; those that are forces of contacts are 0, or fit these modes at a state.
   input(t) {
-    if (this.inputs === 0) return null;
-    const u = new Float64Array(this.inputs);
-    this.code.signals(t, this.x, this.p, null, 0, u);
+    const count = (this.code.info.inputs || []).length;
+    if (count === 0) return null;
+    const u = new Float64Array(count);
+    if (this.inputs > 0) this.code.signals(t, this.x, this.p, null, 0, u);
     return u;
   }
-  outputs(t, x) {
+  inputWith(t, x, forces) {
+    const u = this.input(t);
+    return !forces || forces.solve(t, x, u) ? u : u.fill(NaN);
+  }
+  // mode: of contacts that can open, all open without it.
+  outputs(t, x, mode = this.allOpen) {
     const y = new Float64Array(this.count);
-    this.code.outputs(t, x, this.p, this.input(t), 0, y);
+    if (this.solved) this.forces.mode = mode;
+    this.code.outputs(t, x, this.p, this.inputWith(t, x, this.forces), this.solved ? null : mode, y);
     return y;
   }
 
-  // psi, A, b of the constraints with multipliers, A by rows.
-  constraintsAt(t, x) {
+  // psi, A, b of the constraints with multipliers, A by rows, the index of each and whether it constrains places; with a
+  // mode, without open contacts.
+  constraintsAt(t, x, mode) {
     const {n, m} = this, psi = new Float64Array(m), flat = new Float64Array(m * n), b = new Float64Array(m), A = [];
-    if (m === 0) return {psi, A, b};
-    this.code.constraints(t, x, this.p, psi, flat, b);
+    if (m > 0) this.code.constraints(t, x, this.p, psi, flat, b);
     for (let k = 0; k < m; ++k) A.push(Float64Array.from({length: n}, (_, j) => flat[k + m * j]));
-    return {psi, A, b};
+    const index = A.map((_, k) => k).filter((k) => !mode || !(k in this.contactOf) || mode[this.contactOf[k]] < 3);
+    const rows = index.map((k) => ({psi: psi[k], A: A[k], b: b[k], isPlace: this.kinds[k] === "holonomic"}));
+    if (this.solved && mode) {
+      this.forces.mode = mode;
+      rows.push(...this.forces.closedRows(t, x).gaps.map((row) => ({...row, isPlace: true})));
+    }
+    return {psi: rows.map((row) => row.psi), A: rows.map((row) => row.A), b: rows.map((row) => row.b), isPlace: rows.map((row) => row.isPlace), index};
+  }
+  // The contacts that can open are open at this place, or closed, if it is on their surface or behind it.
+  modeAt(t, x, near = 0) {
+    if (!this.allOpen) return null;
+    if (this.solved) {
+      this.forces.readRows(t, x, this.input(t));
+      return this.solved.contacts.map((contact) => ({...freshState(), mode: contact.unilateral && this.forces.c[contact.gap] > near ? 2 : 0}));
+    }
+    const {psi} = this.constraintsAt(t, x), mode = Int32Array.from(this.allOpen);
+    for (const k in this.contactOf) if (psi[k] <= near) mode[this.contactOf[k]] = 0;
+    return mode;
   }
   massAt(t, x) {
     const {n} = this, M = new Float64Array(n * n), h = new Float64Array(n);
@@ -134,64 +173,73 @@ class Live {
   identity() { return Array.from({length: this.n}, (_, i) => Float64Array.from({length: this.n}, (_, j) => (i === j ? 1 : 0))); }
   // Newton's method by the smallest changes; returns whether the constraints are met.
   meetPositions() {
-    const place = this.kinds.map((kind, k) => (kind === "holonomic" ? k : -1)).filter((k) => k >= 0);
-    const met = ({psi, A}, digits) => place.every((k) => Math.abs(psi[k]) <= digits * A[k].reduce((sum, a, i) => sum + Math.abs(a) * (1 + Math.abs(this.x[i])), 0));
-    for (let iteration = 0; iteration < 40 && place.length > 0; ++iteration) {
-      const at = this.constraintsAt(this.t0, this.x);
-      if (met(at, 1e-14)) break;
-      const d = smallestCorrection(this.identity(), place.map((k) => at.A[k]), place.map((k) => -at.psi[k])), size = Math.hypot(...d);
+    const at = () => {
+      const {psi, A, isPlace} = this.constraintsAt(this.t0, this.x, this.modeAt(this.t0, this.x)), of = (_, i) => isPlace[i];
+      return {psi: psi.filter(of), A: A.filter(of)};
+    };
+    const met = ({psi, A}, digits) => psi.every((value, k) => Math.abs(value) <= digits * A[k].reduce((sum, a, i) => sum + Math.abs(a) * (1 + Math.abs(this.x[i])), 0));
+    for (let iteration = 0; iteration < 40; ++iteration) {
+      const here = at();
+      if (met(here, 1e-14)) break;
+      const d = smallestCorrection(this.identity(), here.A, here.psi.map((value) => -value)), size = Math.hypot(...d);
       for (let i = 0; i < this.n; ++i) this.x[i] += d[i] * Math.min(1, 1 / size);
       if (size < 1e-14) break;
     }
-    return met(this.constraintsAt(this.t0, this.x), 1e-10);
+    return met(at(), 1e-10);
   }
   meetRates() {
-    const {n, m} = this, {rates} = this.layout;
-    if (m === 0) return;
-    const {A, b} = this.constraintsAt(this.t0, this.x);
+    const {n} = this, {rates} = this.layout;
+    const {A, b} = this.constraintsAt(this.t0, this.x, this.modeAt(this.t0, this.x, onSurface));
     const d = smallestCorrection(this.identity(), A, A.map((row, k) => -b[k] - row.reduce((sum, a, i) => sum + a * this.x[rates + i], 0)));
     for (let i = 0; i < n; ++i) this.x[rates + i] += d[i];
   }
 
-  // Projection onto the constraints after a step, by the smallest change in the mass norm.
-  project(t, x) {
-    const {n, m} = this, {rates} = this.layout;
-    if (m === 0) return false;
-    let {psi, A, b} = this.constraintsAt(t, x);
-    const M = this.massAt(t, x);
-    const place = psi.map((value, k) => (this.kinds[k] === "holonomic" ? -value : 0));
-    if (place.some((value) => Math.abs(value) > 1e-13)) {
-      const rows = A.filter((_, k) => this.kinds[k] === "holonomic"), right = place.filter((_, k) => this.kinds[k] === "holonomic");
-      const d = smallestCorrection(M, rows, right);
+  // Projection onto the constraints after a step, by the smallest change in the mass norm. With contacts also onto the
+  // surfaces of closed ones and zero slip of sticking ones.
+  project(t, x, contacts) {
+    const {n} = this, {rates} = this.layout, mode = contacts ? contacts.mode : null, slips = contacts ? contacts.slipRows(t, x, mode) : [];
+    let {psi, A, b, isPlace} = this.constraintsAt(t, x, mode);
+    if (A.length + slips.length === 0) return false;
+    const M = this.massAt(t, x), of = (_, i) => isPlace[i], right = psi.filter(of).map((value) => -value);
+    if (right.some((value) => Math.abs(value) > 1e-13)) {
+      const d = smallestCorrection(M, A.filter(of), right);
       for (let i = 0; i < n; ++i) x[i] += d[i];
-      ({psi, A, b} = this.constraintsAt(t, x));
+      ({psi, A, b} = this.constraintsAt(t, x, mode));
     }
-    const r = A.map((row, k) => -b[k] - row.reduce((sum, a, i) => sum + a * x[rates + i], 0));
-    const d = smallestCorrection(M, A, r);
+    const rows = [...A.map((row, k) => ({A: row, b: b[k]})), ...slips];
+    const r = rows.map((row) => -row.b - row.A.reduce((sum, a, i) => sum + a * x[rates + i], 0));
+    const d = smallestCorrection(M, rows.map((row) => row.A), r);
     for (let i = 0; i < n; ++i) x[rates + i] += d[i];
     return true;
   }
 
   // After a reset: adds the impulses of the constraints to the new velocities. Returns whether new coordinates satisfy
   // the constraints.
-  meet(t, x, set) {
+  meet(t, x, set, contacts) {
     const before = x.slice(0, this.n), size = Math.max(1, ...Array.from(before, Math.abs));
-    this.project(t, x);
+    this.project(t, x, contacts);
     return !set.some(([place]) => place < this.n) || before.every((value, i) => Math.abs(x[i] - value) <= 1e-8 * size);
   }
 
   integration(rows) {
     const g = new Float64Array(this.event_count);
+    let contacts = null;
+    const solved = () => (this.solved ? contacts : null), mode = () => (contacts && !this.solved ? contacts.mode : null), call = (name, t, x, result) => this.code[name](t, x, this.p, this.inputWith(t, x, solved()), mode(), result);
     const problem = {
-      rhs: (t, x, dx) => this.code.rhs(t, x, this.p, this.input(t), 0, dx),
-      project: (t, x) => this.project(t, x),
+      rhs: (t, x, dx) => call("rhs", t, x, dx),
+      project: (t, x) => this.project(t, x, contacts),
+      contacts: (tolerances) => {
+        contacts = this.solved ? new SolvedContacts(this, tolerances) : this.allOpen ? new ContactModes(this, tolerances) : null;
+        return contacts;
+      },
+      open: this.open,
       events: (t, x, values) => {
-        const code = this.code.events(t, x, this.p, this.input(t), 0, g);  // those of kinks follow
+        const code = call("events", t, x, g);  // those of kinks and contacts follow
         values.forEach((_, i) => { values[i] = g[i]; });
         return code;
       },
-      resets: (t, x, r) => this.code.resets(t, x, this.p, this.input(t), 0, r),
-      meet: (t, x, set) => this.meet(t, x, set),
+      resets: (t, x, r) => call("resets", t, x, r),
+      meet: (t, x, set) => this.meet(t, x, set, contacts),
       eventKinds: this.events, samples: this.samples, resetCount: this.reset_count, moving: this.layout.first_order};
     return new Integration(problem, this.t0, this.t1, this.x, rows);
   }

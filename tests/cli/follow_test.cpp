@@ -4,13 +4,11 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <optional>
 
+#include "page_script.hpp"
 #include "program.hpp"
-#include "support/folders.hpp"
 
 using namespace eomgen::test;
 
@@ -151,67 +149,6 @@ void check(const Json& found, const Start& expected) {
     REQUIRE(expected.values.contains(name));
     CHECK(std::abs(value.get<double>() - expected.values.at(name)) <=
           allowed * (1 + std::abs(expected.values.at(name))));
-  }
-}
-
-Json in_json(const std::map<std::string, double>& set) {
-  Json result = Json::object();
-  for (const auto& [name, value] : set) result[name] = value;
-  return result;
-}
-
-std::string between(const std::string& text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  REQUIRE(at != std::string::npos);
-  const std::size_t begin = at + from.size();
-  return text.substr(begin, text.find(to, begin) - begin);
-}
-
-const char* const on_page = R"(
-const data = JSON.parse(DATA), live = new Live(model, data.live, data), asked = JSON.parse(process.argv[2]);
-const names = live.states.map((s) => s.name), find = (name) => live.parameters.findIndex((p) => p.name === name);
-for (const name in asked) names.includes(name) ? live.starts_chosen.set(names.indexOf(name), asked[name]) : live.chosen[find(name)] = asked[name];
-live.prepare();
-)";
-const char* const start_on_page = R"(
-const states = {}, parameters = {};
-names.forEach((name, k) => { states[name] = live.x[k]; });
-live.parameters.forEach((p, i) => { parameters[p.name] = live.p[i]; });
-console.log(JSON.stringify({refusal: live.refusal, t0: live.t0, t1: live.t1, states, parameters, psi: Array.from(live.constraintsAt(live.t0, live.x).psi)}));
-)";
-
-// The whole run in the page, at the tolerances of the run that it is compared with.
-const char* const run_on_page = R"(
-const integration = live.integration(500);
-Object.assign(integration, {rtol: 1e-11, atol: 1e-13});
-while (!integration.advance(1000));
-const last = integration.states.length - 1, end = {};
-names.forEach((name, k) => { end[name] = integration.states[last][k]; });
-console.log(JSON.stringify({outcome: integration.outcome, t: integration.times[last], end, events: integration.found, rising: integration.times.every((t, k) => k === 0 || t >= integration.times[k - 1]),
-  rows: integration.times.length}));
-)";
-
-/// The contents of the page after these values were chosen; nothing without Node.
-std::optional<Json> page(const Folder& folder, const std::string& model, const std::map<std::string, double>& set,
-                         const Words& options = {}, const char* wanted = start_on_page, int status = 0) {
-  expect(status, folder, with({"report", model, "-o", "page.html"}, options));
-  const std::string html = folder.read("page.html");
-  std::string script = "\"use strict\";\nconst DATA = " + Json(between(html, "id=\"motion\">", "</script>")).dump() +
-                       ";\nconst model = (() => {" +
-                       between(html, "const model = (() => {", "})();\nconst surfaceCode") + "})();\n";
-  for (const char* part : {"linear.js", "resets.js", "integrator.js", "motion.js", "address.js"}) {
-    std::ifstream file(source_folder() + "/templates/report/" + part);
-    script.append(std::istreambuf_iterator<char>(file), {});
-  }
-  folder.write("page.js", script + on_page + wanted);
-  try {
-    const ChildResult result = run_child({{"node", "page.js", in_json(set).dump()}, folder.path()});
-    CAPTURE(result.err);
-    REQUIRE(result.status == 0);
-    return Json::parse(result.out);
-  } catch (const std::runtime_error&) {
-    MESSAGE("skipped: there is no node");
-    return std::nullopt;
   }
 }
 

@@ -183,7 +183,7 @@ async function drag(frame, report, name) {
   send("pointerup", end);
   await wait(() => report.motion().t.length >= 501);
   report.player.play(false);
-  const {psi} = report.live.constraintsAt(report.live.t0, report.motion().x[0]);
+  const {live} = report, x0 = report.motion().x[0], {psi} = live.constraintsAt(live.t0, x0, live.modeAt(live.t0, x0));  // of closed contacts
   const shown = tables(page, report);
   return {moved: Math.hypot(reached[0] - begin[0], reached[1] - begin[1]), nearer: Math.hypot(reached[0] - end[0], reached[1] - end[1]) < Math.hypot(begin[0] - end[0], begin[1] - end[1]) - 3,
           psi: Math.max(0, ...Array.from(psi, Math.abs)), ran: report.motion().t.length >= 501, ...shown};

@@ -91,8 +91,17 @@ TEST_CASE(
 
   expect(0, folder, {"report", "bouncing_ball", "-o", "page.html"});
   moving = motion(folder.read("page.html"));
+  CHECK(moving["reason"] == "");
+  CHECK(moving["live"]["contacts"][0]["name"] == "floor");
+  CHECK(moving["x"].size() == moving["y"].size());  // forces of the run in its modes
+
+  std::ifstream ball(eomgen::test::source_folder() + "/models/bouncing_ball.toml");
+  folder.write("energetic.toml",
+               std::string(std::istreambuf_iterator<char>(ball), {}) + "[impacts]\nlaw = \"stronge\"\n");
+  expect(0, folder, {"report", "energetic.toml", "-o", "page.html"});
+  moving = motion(folder.read("page.html"));
   CHECK(moving["live"].is_null());
-  CHECK(contains(moving["reason"].get<std::string>(), "contacts"));
+  CHECK(contains(moving["reason"].get<std::string>(), "Stronge's law"));
   CHECK(moving["x"].is_null());
   CHECK(moving["down"] == Json({0.0, -9.81, 0.0}));
   const std::size_t at = moving["parts"]["places"][0]["at"];

@@ -8,6 +8,7 @@
 #include "emit/targets.hpp"
 #include "mechanics/imposition.hpp"
 #include "numeric/numbers.hpp"
+#include "pipeline/contact_outputs.hpp"
 #include "pipeline/reset_places.hpp"
 #include "pipeline/start_description.hpp"
 #include "program/from_dag.hpp"
@@ -19,6 +20,7 @@ namespace {
 using symbolic::Ref;
 using symbolic::SymbolKind;
 
+constexpr std::size_t most_contacts = 20;       // whose forces are solved for at every evaluation
 constexpr std::size_t largest_script = 400000;  // bytes; longer code takes too long to load
 
 class Live {
@@ -44,11 +46,12 @@ class Live {
     program.charts.clear();
     for (const program::Function& function : s_.program.functions) {
       if (function.name == "rhs" || function.name == "mass" || function.name == "constraints" ||
-          function.name == "resets")
+          function.name == "resets" || function.name == "contact_rows")
         program.functions.push_back(function);
       if (function.name == "events" && s_.program.event_count() > 0) program.functions.push_back(function);
       if (function.name == "outputs") program.functions.push_back(program::restrict_results(function, chosen()));
     }
+    if (!s_.program.contacts.empty()) program.functions.push_back(contact_function());
     program.outputs = outputs_;
     program.reactions.clear();
     program.functions.push_back(setup());
@@ -74,8 +77,10 @@ class Live {
  private:
   /// Feature of the model that the page's integrator does not support, or "".
   std::string obstacle() const {
-    if (!s_.program.contacts.empty() || !s_.program.contact_set.empty())
-      return "its contacts stick, slide or open, and each mode has equations of its own";
+    if (!s_.program.contact_set.empty() && s_.program.contact_set.law == eom::contacts::ImpactLaw::stronge)
+      return "Stronge's law of impacts is not computed on a page";
+    if (s_.program.contact_set.contacts.size() > most_contacts)
+      return fmt::format("its {} contacts would take too long", s_.program.contact_set.contacts.size());
     if (!s_.scene.jumps.functions.empty())
       return "a velocity jumps during the run, and the page does not compute impulses";
     for (const model::SceneInput& input : model_scene().inputs) {
@@ -87,13 +92,53 @@ class Live {
 
   const model::Scene& model_scene() const { return derived_.model.scene(s_.scene.name); }
 
-  std::vector<std::size_t> chosen() const {
+  /// Places of outputs among those of the program.
+  std::vector<std::size_t> places_of(const std::vector<std::string>& names) const {
     std::vector<std::size_t> places;
-    for (const std::string& name : outputs_) {
+    for (const std::string& name : names) {
       places.push_back(static_cast<std::size_t>(std::find(s_.program.outputs.begin(), s_.program.outputs.end(), name) -
                                                 s_.program.outputs.begin()));
     }
     return places;
+  }
+  std::vector<std::size_t> chosen() const { return places_of(outputs_); }
+
+  /// Names of the outputs from which the modes of all contacts follow.
+  std::vector<std::string> names_of_contacts() const {
+    std::vector<std::string> names;
+    for (const run::ContactOutputs& contact : pipeline::contact_outputs(derived_.candidates.front())) {
+      const std::vector<std::string> more = pipeline::output_names(contact);
+      names.insert(names.end(), more.begin(), more.end());
+    }
+    return names;
+  }
+  program::Function contact_function() const {
+    const auto outputs = std::find_if(s_.program.functions.begin(), s_.program.functions.end(),
+                                      [](const program::Function& function) { return function.name == "outputs"; });
+    program::Function function = program::restrict_results(*outputs, places_of(names_of_contacts()));
+    function.name = "contact_outputs";
+    return function;
+  }
+  void add_contacts(LiveStart& start) const {
+    const std::vector<run::ContactOutputs> outputs = pipeline::contact_outputs(derived_.candidates.front());
+    const std::vector<std::string> names = names_of_contacts();
+    const auto places = [&](const std::vector<std::string>& of) {
+      std::vector<std::size_t> result;
+      for (const std::string& name : of)
+        result.push_back(static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin()));
+      return result;
+    };
+    for (std::size_t j = 0; j < s_.program.contacts.size(); ++j) {
+      const run::ContactOutputs& of = outputs[j];
+      LiveContact contact{
+          s_.program.contacts[j].name, s_.program.contacts[j], places(of.slip), places(of.phi), {}, of.constraint, {}};
+      for (const std::vector<std::string>& slopes : of.slopes) contact.slopes.push_back(places(slopes));
+      if (!of.restitution.empty()) contact.restitution = places({of.restitution}).front();
+      start.contacts.push_back(std::move(contact));
+    }
+    start.contact_outputs = names.size();
+    start.contact_set = s_.program.contact_set;
+    start.mode_size = s_.program.mode_layout().size();
   }
 
   program::Function function(const std::string& name, const std::vector<program::ResultExpressions>& results) {
@@ -176,6 +221,7 @@ class Live {
     const model::Model& model = derived_.model;
     LiveStart start;
     add_states(start);
+    add_contacts(start);
     for (std::size_t i = 0; i < model.parameters.size(); ++i) {
       const model::Parameter& p = model.parameters[i];
       start.parameters.push_back({p.name, p.unit.text, p.note, s_.scene.parameters[i], p.positive,

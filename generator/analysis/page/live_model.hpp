@@ -4,8 +4,11 @@
 // model, it replays the run, and the reason is given.
 #pragma once
 
+#include <eom/contacts/description.hpp>
 #include <eom/hybrid/reset_types.hpp>
 #include <eom/layout.hpp>
+#include <eom/modes/contact_state.hpp>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -33,6 +36,16 @@ struct LiveEvent {
   eom::hybrid::Reset reset = {};
 };
 
+/// A contact whose modes are tabulated. Indices are those of the function `contact_outputs`.
+struct LiveContact {
+  std::string name;
+  eom::ContactShape shape;
+  std::vector<std::size_t> slip, phi;  // per tangent
+  std::vector<std::vector<std::size_t>> slopes;
+  std::size_t constraint = 0;              // of a contact that can open
+  std::optional<std::size_t> restitution;  // of a contact that can open
+};
+
 /// Initial data of the page's integrator.
 struct LiveStart {
   eom::StateLayout layout;
@@ -44,6 +57,9 @@ struct LiveStart {
   std::size_t inputs = 0;
   std::vector<LiveEvent> events;
   std::vector<eom::hybrid::Sample> samples;  // the page computes their periods from its parameters
+  std::vector<LiveContact> contacts;
+  std::size_t contact_outputs = 0, mode_size = 0;
+  eom::contacts::Set contact_set;  // contacts whose forces are inputs; their places are in `info` of the script
   std::size_t constraints = 0, event_functions = 0, reset_values = 0, sizes = 0;
 };
 
@@ -52,6 +68,8 @@ struct LiveModel {
   std::string name;    // of the constant that the script defines
   std::string reason;  // a sentence: why the page replays the run
   LiveStart start;
+
+  bool has_contacts() const { return !start.contacts.empty() || !start.contact_set.empty(); }
 };
 
 /// `outputs`: names in the order of the array that the page draws and plots from. `set`: parameters and initial values

@@ -282,16 +282,16 @@ int execute(const Options& options, const CommonOptions& common) {
     motion = moving.is_null() ? "" : moving.dump();
     plots = Html();
     add_run(plots, simulation, run, recorded, curves, coarser);
-    taken =
-        render_page({title, plots.text() + rest.text(), motion, live.script, live.name, surfaces.script, surfaces.name})
-            .size();
+    taken = render_page({title, plots.text() + rest.text(), motion, live.script, live.name, surfaces.script,
+                         surfaces.name, live.has_contacts()})
+                .size();
     if (taken <= largest_motion || recorded.size() <= fewest_rows) break;
     recorded.drop_every_second_row();
   }
   add_head(html, model, !motion.empty());
   add_equations(html, simulation.derived->mechanics, simulation.derived->conserved, taken);
   write_text(file, render_page({title, html.text() + plots.text() + rest.text(), motion, live.script, live.name,
-                                surfaces.script, surfaces.name}));
+                                surfaces.script, surfaces.name, live.has_contacts()}));
   const eom::Outcome outcome = simulation.result.outcome;
   if (common.json) {
     print_document({{"format", 1},

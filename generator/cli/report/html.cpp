@@ -9,9 +9,13 @@
 
 #include "cli/report_skeletons/address_js.hpp"
 #include "cli/report_skeletons/camera_js.hpp"
+#include "cli/report_skeletons/contact_forces_js.hpp"
+#include "cli/report_skeletons/contacts_js.hpp"
 #include "cli/report_skeletons/controls_js.hpp"
 #include "cli/report_skeletons/drag_js.hpp"
 #include "cli/report_skeletons/fit_js.hpp"
+#include "cli/report_skeletons/friction_problem_js.hpp"
+#include "cli/report_skeletons/guards_js.hpp"
 #include "cli/report_skeletons/integrator_js.hpp"
 #include "cli/report_skeletons/linear_js.hpp"
 #include "cli/report_skeletons/links_js.hpp"
@@ -26,7 +30,9 @@
 #include "cli/report_skeletons/results_js.hpp"
 #include "cli/report_skeletons/scene_js.hpp"
 #include "cli/report_skeletons/shapes_js.hpp"
+#include "cli/report_skeletons/solved_contacts_js.hpp"
 #include "cli/report_skeletons/surfaces_js.hpp"
+#include "cli/report_skeletons/transitions_js.hpp"
 #include "print/notation.hpp"
 
 namespace eomgen::cli {
@@ -89,13 +95,16 @@ std::string render_page(const PageParts& parts) {
   all.set("model", returned(parts.model, parts.name));
   all.set("surfaces", returned(parts.surfaces, parts.surfaces_name));
   std::string scripts;
-  for (const char* script :
-       {report::linear_js, report::resets_js, report::integrator_js, report::motion_js, report::address_js,
-        report::shapes_js, report::camera_js, report::pencil_js, report::links_js, report::surfaces_js,
-        report::scene_js, report::plots_js, report::phase_js, report::drag_js, report::controls_js, report::fit_js,
-        report::results_js, report::main_js}) {
-    scripts += script;
-  }
+  const auto add = [&scripts](std::initializer_list<const char*> some) {
+    for (const char* script : some) scripts += script;
+  };
+  add({report::linear_js, report::resets_js});
+  if (parts.has_contacts)
+    add({report::contacts_js, report::friction_problem_js, report::contact_forces_js, report::transitions_js,
+         report::solved_contacts_js, report::guards_js});
+  add({report::integrator_js, report::motion_js, report::address_js, report::shapes_js, report::camera_js,
+       report::pencil_js, report::links_js, report::surfaces_js, report::scene_js, report::plots_js, report::phase_js,
+       report::drag_js, report::controls_js, report::fit_js, report::results_js, report::main_js});
   all.set("scripts", scripts);
   all.set("moving",
           parts.motion.empty() ? kainjow::mustache::data::type::bool_false : kainjow::mustache::data::type::bool_true);

@@ -31,6 +31,7 @@ struct PageParts {
   // empty.
   std::string model, name;
   std::string surfaces, surfaces_name;
+  bool has_contacts = false;  // whether the model in JavaScript has any
 };
 
 /// Returns the whole page: the skeleton of templates/report with its style and scripts.

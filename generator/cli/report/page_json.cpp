@@ -101,6 +101,27 @@ void add_forces(Json& parts, const analysis::DrawnForces& forces) {
   parts["without_vector"] = forces.without_vector();
 }
 
+namespace {
+
+const char* name_of(eom::contacts::ImpactLaw law) {
+  switch (law) {
+    case eom::contacts::ImpactLaw::newton: return "newton";
+    case eom::contacts::ImpactLaw::poisson: return "poisson";
+    case eom::contacts::ImpactLaw::moreau: return "moreau";
+    case eom::contacts::ImpactLaw::stronge: return "stronge";
+  }
+  return "";
+}
+
+Json to_json(const eom::contacts::Set& set) {
+  if (set.empty()) return nullptr;
+  return {{"values", set.values},
+          {"law", name_of(set.law)},
+          {"order", set.order == eom::contacts::ImpactOrder::sequence ? "sequence" : "simultaneous"}};
+}
+
+}  // namespace
+
 Json to_json(const analysis::LiveStart& start) {
   return {{"n", start.layout.coordinates},
           {"layout", to_json(start.layout)},
@@ -139,6 +160,22 @@ Json to_json(const analysis::LiveStart& start) {
                                 add_reset(sample, s.reset);
                                 return sample;
                               })},
+          {"contacts", list_of(start.contacts,
+                               [](const analysis::LiveContact& c) -> Json {
+                                 return {{"name", c.name},
+                                         {"directions", c.shape.dimensions},
+                                         {"surface", c.shape.surface},
+                                         {"unilateral", c.shape.unilateral},
+                                         {"sticks", c.shape.sticks},
+                                         {"slip", c.slip},
+                                         {"phi", c.phi},
+                                         {"slopes", c.slopes},
+                                         {"constraint", c.constraint},
+                                         {"restitution", c.restitution ? Json(*c.restitution) : Json(nullptr)}};
+                               })},
+          {"contact_output_count", start.contact_outputs},
+          {"mode_size", start.mode_size},
+          {"solved", to_json(start.contact_set)},
           {"reset_count", start.reset_values},
           {"constraints", start.constraints},
           {"event_count", start.event_functions},

@@ -107,7 +107,7 @@ Json RecordedMotion::json(const pipeline::Simulation& simulation, const analysis
   add_forces(parts, forces);
   return {{"t", times},
           {"x", is_live ? rows(states, digits_of_states) : Json(nullptr)},
-          {"y", is_live ? Json(nullptr) : rows(outputs, digits_of_screens)},
+          {"y", is_live && !live.has_contacts() ? Json(nullptr) : rows(outputs, digits_of_screens)},
           {"t0", simulation.scene.t0},
           {"t1", simulation.scene.t1},
           {"speed", span / std::clamp(span, least_seconds, most_seconds)},

@@ -1,0 +1,150 @@
+// Forces of contacts that are inputs of the emitted code (docs/abi.md, "Contacts"), by the rules of
+// lib/eom/contacts/contact_forces.hpp and thresholds.hpp. In: the rows of contacts, their modes. Out: the forces with which
+// closed contacts stay closed and sticking ones stick; values that count as zero.
+//
+// The mode of a contact is 0 closed and sticking, 1 and -1 sliding along and against its tangent, 2 open.
+const freshState = () => ({mode: 0, sign: 1, direction: [0, 0], starts: false});
+
+class ContactForces {
+  // live: code, p, input(t), solved {contacts, values, law, order}, n, layout; tolerances: {rtol, atol}
+  constructor(live, tolerances) {
+    Object.assign(this, {live, tolerances, law: live.solved.law, order: live.solved.order, contacts: live.solved.contacts, n: live.n, rates: live.layout.rates, failure: ""});
+    this.mode = this.contacts.map(freshState);
+    this.c = new Float64Array(live.solved.values);
+    this.amplitude = this.contacts.map(() => [1, 1, 1]);
+    this.hits = this.contacts.map(() => 0);
+    this.chatter = new Chatter();
+    this.mostRepeated = 1000;
+    this.begin();
+  }
+  begin() {
+    const zeros = () => this.contacts.map(() => 0);
+    Object.assign(this, {sizes: {speed: 0, gap: zeros(), terms: zeros(), force: zeros()}, largestAcceleration: 0, leastSlip: 0});
+  }
+
+  isClosed(j) { return this.mode[j].mode !== 2; }
+  isSticking(j) { return this.contacts[j].sticks && this.mode[j].mode === 0; }
+  isHeld(j) { return this.contacts[j].gap !== undefined; }
+  slips(j) { return this.contacts[j].slip || []; }
+  // Whether the friction of a contact follows from its normal force and its slip.
+  rubs(j) { return this.isClosed(j) && this.slips(j).length > 0 && !this.isSticking(j); }
+
+  // Rows at a state; u without forces of contacts.
+  readRows(t, x, u) { return this.live.code.contact_rows(t, x, this.live.p, u, null, this.c) === 0; }
+  rate(row) { return this.c[row.first]; }
+  change(row, a) { return row.columns.reduce((sum, i, k) => sum + this.c[row.first + 2 + k] * a[i], 0); }
+  acceleration(row, a) { return this.c[row.first + 1] + this.change(row, a); }
+  terms(row, values, from = 0) { return row.columns.reduce((sum, i, k) => sum + Math.abs(this.c[row.first + 2 + k] * values[from + i]), 0); }
+  slipSpeed(j) { return Math.hypot(...this.slips(j).map((row) => this.rate(row))); }
+  accelerations(t, x, u) {
+    const dx = new Float64Array(x.length);
+    if (this.live.code.rhs(t, x, this.live.p, u, null, dx) !== 0) return null;
+    const a = dx.slice(this.rates, this.rates + this.n);
+    return a.every(Number.isFinite) ? a : null;
+  }
+
+  // The direction of slip, times the share of the Coulomb force that its law gives.
+  direction(j) {
+    const at = this.contacts[j], w = this.slips(j).map((row) => this.rate(row)), speed = Math.hypot(...w);
+    if (at.width !== undefined) {
+      const size = Math.hypot(speed, this.c[at.width]);
+      return w.map((value) => (size === 0 ? 0 : value / size));
+    }
+    if (w.length === 1) return [this.mode[j].mode === -1 ? -1 : 1];
+    return speed <= this.leastSlip ? this.mode[j].direction : w.map((value) => value / speed);
+  }
+  // A unit force: inputs and their shares. The normal one with the friction that follows from it, if `rubs`.
+  normalPattern(j, rubs) {
+    const at = this.contacts[j], inputs = [[at.force_input, 1]];
+    if (rubs && this.rubs(j)) {
+      const strength = this.c[at.dynamic_coefficient] * this.c[at.normal_scale] * this.mode[j].sign;
+      this.direction(j).forEach((d, a) => inputs.push([at.friction_input + a, -strength * d]));
+    }
+    return {j, component: -1, inputs};
+  }
+  tangentPattern(j, a) { return {j, component: a, inputs: [[this.contacts[j].friction_input + a, 1]]}; }
+  push(u, pattern, amount) { for (const [input, share] of pattern.inputs) u[input] += share * amount; }
+
+  // Accelerations without forces of contacts but for friction with a given normal force, which stays in u.
+  readFree(t, x, u) {
+    this.contacts.forEach((at, j) => {
+      if (this.isHeld(j) || !this.rubs(j)) return;
+      const force = this.c[at.dynamic_coefficient] * Math.abs(this.c[at.given_normal]);
+      this.direction(j).forEach((d, a) => { u[at.friction_input + a] = -force * d; });
+    });
+    this.free = this.accelerations(t, x, u);
+    return this.free !== null;
+  }
+  // The change of the accelerations for a unit force, from one with an effect of their size; or null.
+  response(t, x, u, pattern) {
+    const amplitudes = this.amplitude[pattern.j], at = pattern.component + 1, largest = (a) => a.reduce((most, value) => Math.max(most, Math.abs(value)), 0), size = largest(this.free);
+    let result = null;
+    for (let attempt = 0; attempt < 2; ++attempt) {
+      const amplitude = amplitudes[at];
+      this.push(u, pattern, amplitude);
+      const moved = this.accelerations(t, x, u);
+      this.push(u, pattern, -amplitude);
+      if (moved === null) return null;
+      result = moved.map((value, i) => (value - this.free[i]) / amplitude);
+      const effect = largest(result) * amplitude;
+      if (size === 0 || effect === 0 || effect > 1e-2 * size && effect < 1e2 * size) break;
+      amplitudes[at] *= size / effect;
+    }
+    return result;
+  }
+
+  // Adds the forces of the current modes to u, whose forces of contacts are 0. Returns whether there are any.
+  solve(t, x, u) {
+    const count = this.contacts.length, patterns = [], rows = [];
+    Object.assign(this, {lambda: new Float64Array(count), phi: this.contacts.map(() => [0, 0]), margins: new Float64Array(count).fill(1), forceSize: new Float64Array(count)});
+    this.contacts.forEach((at, j) => { u[at.mode_input] = this.mode[j].mode; });
+    if (this.mode.every((state) => state.mode === 2)) return true;
+    if (!this.readRows(t, x, u) || !this.readFree(t, x, u)) return false;
+    this.contacts.forEach((at, j) => {
+      if (!this.isClosed(j)) return;
+      if (this.isHeld(j)) {
+        patterns.push(this.normalPattern(j, true));
+        rows.push(at.normal);
+      }
+      if (this.isSticking(j)) this.slips(j).forEach((row, a) => { patterns.push(this.tangentPattern(j, a)); rows.push(row); });
+    });
+    if (patterns.length > 0) {
+      const responses = patterns.map((pattern) => this.response(t, x, u, pattern));
+      if (responses.includes(null)) return false;
+      const W = rows.map((row) => responses.map((response) => this.change(row, response))), right = rows.map((row) => -this.acceleration(row, this.free));
+      patterns.forEach(({j}, k) => {
+        const size = Math.abs(this.c[rows[k].first + 1]) + this.terms(rows[k], this.free), share = Math.abs(W[k][k]);
+        this.largestAcceleration = Math.max(this.largestAcceleration, size);
+        if (share > 0) this.forceSize[j] += size / share;
+      });
+      const {x: forces} = leastNorm(W, right);
+      patterns.forEach((pattern, k) => {
+        this.push(u, pattern, forces[k]);
+        if (pattern.component >= 0) return;
+        this.lambda[pattern.j] = forces[k];
+        if (this.rubs(pattern.j)) this.margins[pattern.j] = W[k][k];
+      });
+    }
+    this.contacts.forEach((at, j) => this.slips(j).forEach((_, a) => { this.phi[j][a] = u[at.friction_input + a]; }));
+    return true;
+  }
+  normalForce(j) {
+    const at = this.contacts[j];
+    return this.isHeld(j) ? this.c[at.normal_scale] * this.lambda[j] : Math.abs(this.c[at.given_normal]);
+  }
+
+  // Values that count as zero, from the largest terms of the run.
+  negligible() { return Math.max(1e-15, this.tolerances.atol, Math.max(1e-3 * this.tolerances.rtol, 1e-14) * this.sizes.speed); }
+  gapRounding(j, x) { return Math.max(16 * 2 ** -52 * Math.max(this.sizes.terms[j], this.terms(this.contacts[j].normal, x)), knownGap * this.sizes.gap[j]); }
+  observeState(x) {
+    const {sizes} = this, grow = (value, before) => (Number.isFinite(value) ? Math.max(before, value) : before);
+    this.contacts.forEach((at, j) => {
+      if (this.isHeld(j)) {
+        sizes.speed = grow(this.terms(at.normal, x, this.rates), sizes.speed);
+        sizes.terms[j] = grow(this.terms(at.normal, x), sizes.terms[j]);
+      }
+      for (const row of this.slips(j)) sizes.speed = grow(this.terms(row, x, this.rates), sizes.speed);
+      if (at.unilateral && !this.isClosed(j)) sizes.gap[j] = grow(this.c[at.gap], sizes.gap[j]);
+    });
+  }
+}

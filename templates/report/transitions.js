@@ -1,0 +1,160 @@
+// Changes of contacts at an instant, by the rules of lib/eom/contacts/transitions.hpp. In: a state at which contacts meet,
+// part, slip or stop. Out: impulses with the velocities after them, then the modes of all contacts from one
+// complementarity problem on accelerations.
+class ContactTransitions extends ContactForces {
+  // Impulses of contacts that approach, then new modes. Returns the changes [{j, kind}], or sets `failure`.
+  meet(t, x, touching, plastic, rest, hint) {
+    const before = this.mode, hit = [], u = this.live.input(t);
+    this.mode = before.map((state) => ({...state}));
+    const approaches = () => touching.some((j) => this.contacts[j].unilateral && this.rate(this.contacts[j].normal) < -this.negligible());
+    let fault = null;  // a contact, or none
+    if (this.readRows(t, x, u) && approaches()) fault = this.impact(t, x, u, touching, plastic, rest, hit);
+    if (fault === null) fault = this.decide(t, x, this.live.input(t), touching, hint);
+    if (fault !== null) this.failure = fault < 0 ? "the forces of contacts have no value" : "the contact \u201c" + this.contacts[fault].name + "\u201d has no force or impulse that fits its law";
+    const changes = hit.map((j) => ({j, kind: "contact"}));
+    for (const j of hit) ++this.hits[j];
+    this.mode.forEach(({mode: to}, j) => {
+      const from = before[j].mode, wasHit = hit.includes(j);
+      if (from === 2 && to !== 2 && !wasHit) changes.push({j, kind: "contact"});
+      if (from !== 2 && to === 2 && !wasHit) changes.push({j, kind: "lose_contact"});
+      if (from !== 2 && to !== 2 && this.contacts[j].sticks && from !== to) changes.push({j, kind: to === 0 ? "stick" : from === 0 ? "slip" : "reverse"});
+    });
+    return changes;
+  }
+
+  // The velocity of a row at changed rates: rows were read before, at the rates `read`.
+  speed(row, x) { return this.rate(row) + row.columns.reduce((sum, i, k) => sum + this.c[row.first + 2 + k] * (x[this.rates + i] - this.read[i]), 0); }
+
+  // Returns null, or the contact without an impulse, -1 for a function without value.
+  impact(t, x, u, touching, plastic, rest, hit) {
+    if (!this.readFree(t, x, u)) return -1;
+    this.read = x.slice(this.rates, this.rates + this.n);
+    if (rest) {  // first what the law does, then the speeds that are left of it
+      const all = plastic.map(() => true), fault = this.apply(t, x, u, touching, all, false, hit);
+      return fault !== null ? fault : this.apply(t, x, u, touching, all, true, hit);
+    }
+    if (this.order === "simultaneous") return this.apply(t, x, u, touching, plastic, false, hit);
+    for (let count = 0; count < 10000; ++count) {
+      let fastest = -1, least = -this.negligible();
+      for (const j of touching) {
+        const speed = this.contacts[j].unilateral ? this.speed(this.contacts[j].normal, x) : 0;
+        if (speed < least) [fastest, least] = [j, speed];
+      }
+      if (fastest < 0) return null;
+      const fault = this.apply(t, x, u, [fastest], plastic, false, hit);
+      if (fault !== null) return fault;
+    }
+    return touching[0];
+  }
+
+  // A problem of rows {row, j, kind, response} and laws; rows are added by `normal` and `friction`.
+  problem(t, x, u) {
+    const rows = [], laws = [];
+    const add = (j, row, pattern, kind) => rows.push({row, j, kind, response: this.response(t, x, u, pattern)}) - 1;
+    const friction = (j, normal, coefficient) => {
+      const at = this.contacts[j], law = {j, normal, coefficient: this.c[coefficient], sign: 1, given: 0};
+      if (normal < 0) law.given = this.c[at.given_normal];
+      else law.sign = this.mode[j].sign * this.c[at.normal_scale];
+      law.tangents = this.slips(j).map((row, a) => add(j, row, this.tangentPattern(j, a), "friction"));
+      laws.push(law);
+    };
+    const solved = (q) => new FrictionProblem(rows.map(({row}) => rows.map(({response}) => this.change(row, response))), q, rows.map(({kind}) => kind), laws);
+    return {rows, laws, add, friction, solved};
+  }
+
+  apply(t, x, u, acting, plastic, rest, hit) {
+    const {rows, add, friction, solved} = this.problem(t, x, u), least = this.negligible();
+    this.contacts.forEach((at, j) => {
+      if (at.unilateral ? !acting.includes(j) : !this.isHeld(j)) return;
+      const normal = add(j, at.normal, this.normalPattern(j, false), at.unilateral && !rest ? "unilateral" : "bilateral");
+      if (this.law !== "newton" && at.sticks && !rest) friction(j, normal, at.dynamic_coefficient);
+    });
+    if (rows.some(({response}) => response === null)) return -1;
+    const approach = rows.map(({row}) => this.speed(row, x));
+    const restitution = rows.map(({kind, j}, i) => (kind === "unilateral" && !plastic[j] && approach[i] < -least ? this.c[this.contacts[j].restitution] : 0));
+    const poisson = this.law === "poisson", problem = solved(approach.map((speed, i) => speed * (poisson ? 1 : 1 + restitution[i])));
+    const impulses = problem.solve(), slowest = () => rows[approach.indexOf(Math.min(...approach))].j;
+    if (impulses === null) return slowest();
+    let total = impulses.force;
+    if (poisson) {  // restitution gives back a share of the impulses of compression; what comes to it may be more
+      const share = total.map((value, i) => restitution[i] * Math.max(0, value)), after = total.map((value, i) => value + share[i]);
+      const more = solved(problem.G.map((row, i) => row.reduce((sum, g, k) => sum + g * after[k], problem.q[i]))).solve();
+      if (more === null) return slowest();
+      total = after.map((value, i) => value + more.force[i]);
+    }
+    rows.forEach(({response}, k) => response.forEach((value, i) => { x[this.rates + i] += total[k] * value; }));
+    rows.forEach(({kind, j}, i) => {
+      if (kind !== "friction" && this.contacts[j].unilateral && approach[i] < -least && total[i] > 0 && !hit.includes(j)) hit.push(j);
+    });
+    return null;
+  }
+
+  // The modes of contacts whose gap speeds are not negative. Only those in `touching` can be closed.
+  decide(t, x, u, touching, hint) {
+    if (!this.readRows(t, x, u)) return -1;
+    const least = this.negligible();
+    this.contacts.forEach((at, j) => {
+      const state = this.mode[j];
+      if (at.unilateral && (!touching.includes(j) || this.rate(at.normal) > least)) {
+        state.mode = 2;
+        return;
+      }
+      Object.assign(state, {mode: 0, starts: false});
+      if (!at.sticks || hint.stops && hint.j === j) return;
+      const moves = this.slipSpeed(j) > (this.slips(j).length === 2 ? Math.max(least, this.leastSlip) : least);
+      if (moves) state.mode = this.slips(j).length === 1 && this.rate(this.slips(j)[0]) < 0 ? -1 : 1;
+    });
+    const broken = this.contacts.map((_, j) => Boolean(hint.slips) && hint.j === j);
+    for (let round = 0; round <= this.contacts.length; ++round) {
+      const {fault, again} = this.settle(t, x, this.live.input(t), hint, broken);
+      if (fault !== null || !again) return fault;
+    }
+    return null;
+  }
+
+  // One complementarity problem on accelerations. `again`: a contact begins to slide, whose coefficient changes.
+  settle(t, x, u, hint, broken) {
+    const result = {fault: null, again: false};
+    if (!this.readFree(t, x, u)) return {fault: -1, again: false};
+    const {rows, laws, add, friction, solved} = this.problem(t, x, u);
+    this.contacts.forEach((at, j) => {
+      if (!this.isClosed(j)) return;
+      const normal = this.isHeld(j) ? add(j, at.normal, this.normalPattern(j, true), at.unilateral ? "unilateral" : "bilateral") : -1;
+      if (this.isSticking(j)) friction(j, normal, broken[j] ? at.dynamic_coefficient : at.static_coefficient);
+    });
+    if (rows.length === 0) return result;
+    if (rows.some(({response}) => response === null)) return {fault: -1, again: false};
+    const size = Math.max(...rows.map(({row}) => Math.abs(this.c[row.first + 1]) + this.terms(row, this.free)));
+    const q = rows.map(({row}) => this.acceleration(row, this.free)), announced = 1e-9 * size;
+    // A small acceleration towards the change that the crossing announces: at the crossing both modes obey the law.
+    let tangent = 0;
+    rows.forEach(({kind, j}, i) => {
+      if (j !== hint.j) return;
+      const length = Math.hypot(...(hint.friction || []));
+      if (kind !== "friction") q[i] += hint.parts ? announced : 0;
+      else if (hint.slips && length > 0) q[i] -= announced * hint.friction[tangent++] / length;
+    });
+    const problem = solved(q), found = problem.solve();
+    if (found === null) return {fault: rows[q.indexOf(Math.min(...q))].j, again: false};
+    const least = Math.max(1e-12 * size, 1e-13 * this.largestAcceleration), slides = (l) => this.isClosed(laws[l].j) && found.speed[l] > least;
+    rows.forEach(({kind, j}, i) => {
+      const separates = !(found.force[i] > 0) || found.velocity[i] > problem.G[i][i] * found.force[i];
+      if (kind === "unilateral" && separates && (found.velocity[i] > least || hint.parts && hint.j === j)) this.mode[j].mode = 2;
+      if (kind === "bilateral" && found.force[i] !== 0) this.mode[j].sign = found.force[i] < 0 ? -1 : 1;
+    });
+    laws.forEach(({j}, l) => {
+      const at = this.contacts[j];
+      if (slides(l) && !broken[j] && this.c[at.static_coefficient] !== this.c[at.dynamic_coefficient]) broken[j] = result.again = true;
+    });
+    if (result.again) {  // nothing is final
+      for (const {j} of rows) if (this.mode[j].mode === 2) this.mode[j].mode = 0;
+      return result;
+    }
+    laws.forEach(({j, tangents}, l) => {
+      if (!slides(l)) return;
+      const along = tangents.map((row) => found.velocity[row]);
+      Object.assign(this.mode[j], {mode: along.length === 1 && along[0] < 0 ? -1 : 1, starts: along.length === 2, direction: along.map((value) => value / found.speed[l])});
+    });
+    return result;
+  }
+}

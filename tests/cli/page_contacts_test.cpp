@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Contacts on pages of `report` (through Node): stick and slip, impacts, ever smaller bounces, against `run --set`.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "page_script.hpp"
+#include "program.hpp"
+
+using namespace eomgen::test;
+
+namespace {
+
+// Relative, both methods at rtol = 1e-11; each impact and each start of slip multiplies the errors before it.
+constexpr double of_solvers = 1e-6;
+
+// A ball in a corner: the bounces of both sides accumulate together.
+const char* const corner = R"toml(format = 1
+[parameters]
+e = 0.6
+[[particle]]
+name = "P"
+mass = 1
+position = { cartesian = ["x", "y", 0] }
+[[force]]
+gravity = "-9.81*E2"
+[[constraint]]
+name = "left"
+holonomic = "x + y"
+holds = "unilateral"
+restitution = "e"
+[[constraint]]
+name = "right"
+holonomic = "y - x"
+holds = "unilateral"
+restitution = "e"
+[scene.default]
+t = [0, 3]
+initial = { x = 0.1, y = 1 }
+)toml";
+
+// A block on a belt that a sample strikes: new velocities have new modes.
+const char* const struck = R"toml(format = 1
+[parameters]
+blow = 0.8
+[[particle]]
+name = "P"
+mass = 1
+position = { cartesian = ["x", "y", 0] }
+[[force]]
+gravity = "-9.81*E2"
+[[constraint]]
+name = "floor"
+holonomic = "y"
+holds = "unilateral"
+friction = { static = 0.3, dynamic = 0.2 }
+[[sample]]
+name = "strike"
+every = 0.5
+offset = 0.1
+set = { x_dot = "x_dot + blow", y_dot = "y_dot + blow/4" }
+[scene.default]
+t = [0, 2]
+initial = { x = 0, x_dot = 0.3, y = 0 }
+)toml";
+
+// A rough bar falls on two of its ends, with restitution by the ratio of impulses.
+const char* const dropped_bar = R"toml(format = 1
+[parameters]
+e = 0.3
+mu = 0.2
+[[body]]
+name = "bar"
+mass = "1 kg"
+inertia = "1[kg*m^2]/12"
+position = { cartesian = ["x", "0", "z"] }
+rotation = { axis = "E2", angle = "phi" }
+[[force]]
+gravity = "-9.81[m/s^2]*E3"
+[[constraint]]
+name = "left"
+sliding = { body = "bar", at = "-0.5[m]*bar.e1", on = "ground" }
+holds = "unilateral"
+restitution = "e"
+friction = { static = "mu", dynamic = "mu/2" }
+[[constraint]]
+name = "right"
+sliding = { body = "bar", at = "0.5[m]*bar.e1", on = "ground" }
+holds = "unilateral"
+restitution = "e"
+friction = { static = "mu", dynamic = "mu/2" }
+[impacts]
+law = "poisson"
+[scene.default]
+t = [0, 2]
+initial = { x = 0, x_dot = 1, z = 0.6, phi = 0.4 }
+)toml";
+
+struct ContactCase {
+  const char* model;
+  std::map<std::string, double> set;
+};
+
+void check_run(const Json& found, const Json& expected) {
+  CAPTURE(found.dump());
+  CHECK(found["refusal"] == "");
+  CHECK(found["outcome"] == "done");
+  CHECK(found["rising"] == true);
+  CHECK(found["valued"] == true);
+  for (const auto& [name, value] : found["end"].items()) {
+    const double end = expected["final"][name].get<double>();
+    CAPTURE(name);
+    CHECK(std::abs(value.get<double>() - end) <= of_solvers * (1 + std::abs(end)));
+  }
+  std::vector<std::pair<std::string, double>> events;
+  for (const Json& event : expected["events"]) {
+    if (event["kind"] != "sample") events.emplace_back(event["name"].get<std::string>(), event["t"].get<double>());
+  }
+  REQUIRE(found["events"].size() == events.size());
+  for (std::size_t k = 0; k < events.size(); ++k) {
+    CHECK(found["events"][k]["name"] == events[k].first);
+    CHECK(std::abs(found["events"][k]["t"].get<double>() - events[k].second) <= of_solvers * (1 + events[k].second));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("contacts: the run on a page ends where run does, with the same changes of contacts, and takes changed values") {
+  const Folder folder;
+  folder.write("corner.toml", corner);
+  folder.write("struck.toml", struck);
+  folder.write("dropped_bar.toml", dropped_bar);
+  const std::vector<ContactCase> list{{"bouncing_ball", {}},
+                               {"bouncing_ball", {{"e", 0.7}, {"x_dot", 5}}},
+                               {"bouncing_ball", {{"e", 0}, {"mu_d", 0.1}}},
+                               {"stick_slip_belt", {}},
+                               {"dry_friction_oscillator", {}},
+                               {"P6_rough_circle", {}},
+                               {"R16_disk_on_disk", {}},
+                               {"rough_incline_puck", {}},
+                               {"R4_rough_turntable", {}},
+                               {"corner.toml", {}},
+                               {"corner.toml", {{"e", 0.3}}},
+                               {"struck.toml", {{"blow", 1}}},
+                               {"arm_with_stops", {}},
+                               {"arm_with_stops", {{"e", 0.2}}},
+                               {"rocking_block", {}},
+                               {"rocking_block", {{"g", 8}}},
+                               {"ladder", {{"mu", 0.15}}},
+                               {"compass_feet", {}},
+                               {"tethered_satellites", {}},
+                               {"dropped_bar.toml", {}},
+                               {"dropped_bar.toml", {{"mu", 0.5}}}};
+  for (const ContactCase& c : list) {
+    CAPTURE(std::string(c.model));
+    CAPTURE(in_json(c.set).dump());
+    Words words{"run", c.model, "--rtol", "1e-11", "--atol", "1e-13"};
+    for (const auto& [name, value] : c.set) words.insert(words.end(), {"--set", name + "=" + Json(value).dump()});
+    const std::optional<Json> found = page(folder, c.model, c.set, {}, run_on_page);
+    if (!found) return;
+    check_run(*found, document(folder, words));
+  }
+}
