@@ -169,6 +169,8 @@ function panel() {
 
 tools.append(button("+", "Zoom in (+)", () => { scene.camera.zoom *= 1.25; redraw(); }), button("\u2212", "Zoom out (-)", () => { scene.camera.zoom /= 1.25; redraw(); }),
              button("View", "The first view (0)", () => { scene.camera.home(); redraw(); }), checkbox("traces", "traces"), checkbox("axes", "axes"), checkbox("names", "names"));
+const recorder = new Recorder({canvas, scene, player, name: data.model, say: (text) => { message.textContent = text; }});
+if (data.parts.places.length > 0) tools.append(button("Save GIF", "Save the motion as an animated GIF for slides; again: stop", () => recorder.save()));
 if (data.parts.surfaces.length + data.parts.contacts.length > 0) tools.append(checkbox("surfaces", "surfaces"));
 if (data.parts.arrows.length + data.parts.without_vector.length > 0) tools.append(checkbox("forces", "forces"), legend());
 const help = document.createElement("p");
@@ -197,4 +199,4 @@ function followAddress() {
 window.addEventListener("hashchange", followAddress);
 followAddress();
 // For inspection from the console of the browser.
-window.report = {data, live, scene, player, phase, run, motion: () => motion};
+window.report = {data, live, recorder, scene, player, phase, run, motion: () => motion};

@@ -189,6 +189,33 @@ async function drag(frame, report, name) {
           psi: Math.max(0, ...Array.from(psi, Math.abs)), ran: report.motion().t.length >= 501, ...shown};
 }
 
+// The animated picture of the motion as the browser decodes it: its size, and the largest share of pixels of a picture that
+// are far from the drawing.
+async function film(frame, report) {
+  const {recorder} = report, {t0, t1} = report.player, times = [0, 0.3, 0.5, 0.8, 1].map((part) => t0 + part * (t1 - t0)), usual = recorder.times();
+  const bytes = await recorder.gif({times, delay: 7}), decoder = new ImageDecoder({data: bytes, type: "image/gif"}), found = {pictures: 0, off: 0, moves: 0, kB: bytes.length / 1000};
+  await decoder.tracks.ready;
+  await decoder.completed;
+  Object.assign(found, {pictures: decoder.tracks.selectedTrack.frameCount, repeats: decoder.tracks.selectedTrack.repetitionCount === Infinity, usual: usual.times.length, seconds: usual.delay * usual.times.length / 100});
+  let before = null;
+  for (let k = 0; k < found.pictures; ++k) {
+    const {image} = await decoder.decode({frameIndex: k}), {width, height} = recorder.page, sheet = new OffscreenCanvas(width, height).getContext("2d");
+    found.duration = image.duration;
+    sheet.drawImage(image, 0, 0);
+    const got = sheet.getImageData(0, 0, width, height).data, wanted = recorder.picture(times[k]);
+    const far = (other) => got.reduce((count, value, i) => count + (Math.abs(value - other[i]) > 48 ? 1 : 0), 0) / got.length;
+    found.off = Math.max(found.off, far(wanted));
+    if (before !== null) found.moves = Math.max(found.moves, far(before));
+    before = got;
+  }
+  recorder.say = () => {};
+  const download = new Promise((done) => { frame.contentWindow.URL.createObjectURL = (blob) => { done(blob); return "#"; }; });
+  recorder.times = () => ({times, delay: 7});
+  await recorder.save();
+  const saved = await download;
+  return {...found, same: saved.size === bytes.length, type: saved.type};
+}
+
 async function look(entry) {
   const found = {name: entry.name, widths: {}};
   for (const width of widths) {
@@ -247,6 +274,7 @@ async function look(entry) {
         at.link_value = Number(taken.value);
         report.player.play(false);
       }
+      if (width === widths[0] && entry.film) at.film = await film(frame, report);
       if (width === widths[0] && entry.drag) at.drag = await drag(frame, report, entry.drag);
     }
     at.messages = frame.contentWindow.messages;

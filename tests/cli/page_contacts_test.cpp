@@ -127,32 +127,33 @@ void check_run(const Json& found, const Json& expected) {
 
 }  // namespace
 
-TEST_CASE("contacts: the run on a page ends where run does, with the same changes of contacts, and takes changed values") {
+TEST_CASE(
+    "contacts: the run on a page ends where run does, with the same changes of contacts, and takes changed values") {
   const Folder folder;
   folder.write("corner.toml", corner);
   folder.write("struck.toml", struck);
   folder.write("dropped_bar.toml", dropped_bar);
   const std::vector<ContactCase> list{{"bouncing_ball", {}},
-                               {"bouncing_ball", {{"e", 0.7}, {"x_dot", 5}}},
-                               {"bouncing_ball", {{"e", 0}, {"mu_d", 0.1}}},
-                               {"stick_slip_belt", {}},
-                               {"dry_friction_oscillator", {}},
-                               {"P6_rough_circle", {}},
-                               {"R16_disk_on_disk", {}},
-                               {"rough_incline_puck", {}},
-                               {"R4_rough_turntable", {}},
-                               {"corner.toml", {}},
-                               {"corner.toml", {{"e", 0.3}}},
-                               {"struck.toml", {{"blow", 1}}},
-                               {"arm_with_stops", {}},
-                               {"arm_with_stops", {{"e", 0.2}}},
-                               {"rocking_block", {}},
-                               {"rocking_block", {{"g", 8}}},
-                               {"ladder", {{"mu", 0.15}}},
-                               {"compass_feet", {}},
-                               {"tethered_satellites", {}},
-                               {"dropped_bar.toml", {}},
-                               {"dropped_bar.toml", {{"mu", 0.5}}}};
+                                      {"bouncing_ball", {{"e", 0.7}, {"x_dot", 5}}},
+                                      {"bouncing_ball", {{"e", 0}, {"mu_d", 0.1}}},
+                                      {"stick_slip_belt", {}},
+                                      {"dry_friction_oscillator", {}},
+                                      {"P6_rough_circle", {}},
+                                      {"R16_disk_on_disk", {}},
+                                      {"rough_incline_puck", {}},
+                                      {"R4_rough_turntable", {}},
+                                      {"corner.toml", {}},
+                                      {"corner.toml", {{"e", 0.3}}},
+                                      {"struck.toml", {{"blow", 1}}},
+                                      {"arm_with_stops", {}},
+                                      {"arm_with_stops", {{"e", 0.2}}},
+                                      {"rocking_block", {}},
+                                      {"rocking_block", {{"g", 8}}},
+                                      {"ladder", {{"mu", 0.15}}},
+                                      {"compass_feet", {}},
+                                      {"tethered_satellites", {}},
+                                      {"dropped_bar.toml", {}},
+                                      {"dropped_bar.toml", {{"mu", 0.5}}}};
   for (const ContactCase& c : list) {
     CAPTURE(std::string(c.model));
     CAPTURE(in_json(c.set).dump());

@@ -55,15 +55,17 @@ console.log(JSON.stringify({refusal: live.refusal, valued, outcome: integration.
 )";
 
 /// The contents of the page after these values were chosen; nothing without Node.
-inline std::optional<Json> page(const Folder& folder, const std::string& model, const std::map<std::string, double>& set,
-                         const Words& options = {}, const char* wanted = start_on_page, int status = 0) {
+inline std::optional<Json> page(const Folder& folder, const std::string& model,
+                                const std::map<std::string, double>& set, const Words& options = {},
+                                const char* wanted = start_on_page, int status = 0) {
   expect(status, folder, with({"report", model, "-o", "page.html"}, options));
   const std::string html = folder.read("page.html");
   std::string script = "\"use strict\";\nconst DATA = " + Json(between(html, "id=\"motion\">", "</script>")).dump() +
                        ";\nconst model = (() => {" +
                        between(html, "const model = (() => {", "})();\nconst surfaceCode") + "})();\n";
-  for (const char* part : {"linear.js", "resets.js", "contacts.js", "friction_problem.js", "contact_forces.js", "transitions.js", "solved_contacts.js",
-                           "guards.js", "integrator.js", "motion.js", "address.js"}) {
+  for (const char* part :
+       {"linear.js", "resets.js", "contacts.js", "friction_problem.js", "contact_forces.js", "transitions.js",
+        "solved_contacts.js", "guards.js", "integrator.js", "motion.js", "address.js"}) {
     std::ifstream file(source_folder() + "/templates/report/" + part);
     script.append(std::istreambuf_iterator<char>(file), {});
   }

@@ -22,6 +22,7 @@ namespace {
 constexpr std::size_t largest_page = 1000000;  // bytes
 constexpr double as_run_does = 1e-5;  // the page integrates with rtol 1e-8, the run with 1e-9 and another method
 constexpr double a_pixel = 1;
+constexpr double far_colours = 1e-4;  // share of the values of a picture that the palette of 255 colours lacks
 constexpr double first_view = 900;              // height of the frames, in pixels
 constexpr std::size_t longest_formula = 60000;  // bytes, as in report
 constexpr double on_the_sphere = 1e-3;  // for radius 1: intersections of surface lines with cells are found by secants
@@ -266,6 +267,17 @@ void check(const Json& found, const PageCase& c, const Json& wanted) {
     CHECK(wide["drag"]["ran"] == true);
     check_tables(wide["drag"]);
   }
+  if (c.model == "bouncing_ball") {
+    const Json& film = wide["film"];
+    CHECK(film["pictures"] == 5);
+    CHECK(film["repeats"] == true);
+    CHECK(film["duration"] == 70000);  // microseconds
+    CHECK(film["off"] < far_colours);
+    CHECK(film["moves"] > 10 * far_colours);
+    CHECK(film["seconds"].get<double>() == doctest::Approx(4).epsilon(0.02));  // as the player shows it
+    CHECK(film["same"] == true);
+    CHECK(film["type"] == "image/gif");
+  }
   if (c.slider.empty()) return;
   CHECK(wide["ran"] == true);
   CHECK(contains(wide["link"].get<std::string>(), "#" + c.slider + "="));
@@ -331,7 +343,7 @@ TEST_CASE("page: reports show complete equations, replay the run, and integrate 
     Json entry{{"name", c.model}, {"page", page}, {"csv", positions(folder, c.model, motion["parts"]["places"])}};
     if (!c.drag.empty()) entry["drag"] = c.drag;
     if (c.model == "bowl.toml") entry["bowl"] = true;
-    if (c.model == "bouncing_ball") entry["floor"] = true;
+    if (c.model == "bouncing_ball") entry["floor"] = entry["film"] = true;
     if (!c.corner.empty()) entry["corner"] = c.corner;
     wanted.emplace_back();
     if (!c.slider.empty()) {

@@ -15,6 +15,7 @@
 #include "cli/report_skeletons/drag_js.hpp"
 #include "cli/report_skeletons/fit_js.hpp"
 #include "cli/report_skeletons/friction_problem_js.hpp"
+#include "cli/report_skeletons/gif_js.hpp"
 #include "cli/report_skeletons/guards_js.hpp"
 #include "cli/report_skeletons/integrator_js.hpp"
 #include "cli/report_skeletons/linear_js.hpp"
@@ -26,6 +27,7 @@
 #include "cli/report_skeletons/pencil_js.hpp"
 #include "cli/report_skeletons/phase_js.hpp"
 #include "cli/report_skeletons/plots_js.hpp"
+#include "cli/report_skeletons/recorder_js.hpp"
 #include "cli/report_skeletons/resets_js.hpp"
 #include "cli/report_skeletons/results_js.hpp"
 #include "cli/report_skeletons/scene_js.hpp"
@@ -104,7 +106,8 @@ std::string render_page(const PageParts& parts) {
          report::solved_contacts_js, report::guards_js});
   add({report::integrator_js, report::motion_js, report::address_js, report::shapes_js, report::camera_js,
        report::pencil_js, report::links_js, report::surfaces_js, report::scene_js, report::plots_js, report::phase_js,
-       report::drag_js, report::controls_js, report::fit_js, report::results_js, report::main_js});
+       report::drag_js, report::controls_js, report::fit_js, report::results_js, report::gif_js, report::recorder_js,
+       report::main_js});
   all.set("scripts", scripts);
   all.set("moving",
           parts.motion.empty() ? kainjow::mustache::data::type::bool_false : kainjow::mustache::data::type::bool_true);
