@@ -23,7 +23,7 @@ constexpr std::size_t largest_page = 1000000;  // bytes
 constexpr double as_run_does = 1e-5;  // the page integrates with rtol 1e-8, the run with 1e-9 and another method
 constexpr double a_pixel = 1;
 constexpr double far_colours = 1e-4;  // share of the values of a picture that the palette of 255 colours lacks
-constexpr double first_view = 900;              // height of the frames, in pixels
+constexpr double first_view = 900;    // height of the frames, in pixels
 constexpr std::size_t longest_formula = 60000;  // bytes, as in report
 constexpr double on_the_sphere = 1e-3;  // for radius 1: intersections of surface lines with cells are found by secants
 
