@@ -1,6 +1,39 @@
 // Changes of contacts at an instant, by the rules of lib/eom/contacts/transitions.hpp. In: a state at which contacts meet,
 // part, slip or stop. Out: impulses with the velocities after them, then the modes of all contacts from one
 // complementarity problem on accelerations.
+
+// Stronge's energetic law (lib/eom/contacts/stronge.hpp): the normal and the tangential impulse of a contact, or null if it
+// never separates. A unit impulse along the normal changes the velocities (normal, tangential) by (nn, nt), one along the
+// tangent by (nt, tt).
+function collision({normal, tangential = 0, nn, nt = 0, tt = 0, friction = 0, restitution}) {
+  const total = [0, 0], forWork = (v, a, work) => {
+    const square = v * v + 2 * a * work, sum = v + Math.sqrt(square);
+    return sum > 0 ? 2 * work / sum : square < 0 || work > 0 ? Infinity : 0;
+  };
+  let isCompressing = true, compression = 0, given = 0;  // work of the normal impulse
+  for (let phase = 0; phase < 8; ++phase) {  // slip, rest or reversed slip, in compression and in restitution
+    const rubs = tt > 0 && friction > 0, holding = rubs ? -nt / tt : 0;
+    const share = !rubs ? 0 : tangential === 0 ? Math.min(friction, Math.max(-friction, holding)) : tangential > 0 ? -friction : friction;
+    const sticks = rubs && tangential === 0 && share === holding, a = nn + share * nt, b = sticks ? 0 : nt + share * tt;
+    let end = forWork(normal, a, Math.max(0, -restitution * restitution * compression - given));
+    if (isCompressing) end = a > 0 ? -normal / a : Infinity;
+    const stop = tangential * b < 0 && share !== 0 ? -tangential / b : Infinity, step = Math.min(end, stop);
+    if (!Number.isFinite(step)) return null;
+    const work = normal * step + a * step * step / 2;
+    if (isCompressing) compression += work;
+    else given += work;
+    total[0] += step;
+    total[1] += share * step;
+    normal += a * step;
+    tangential = stop <= end ? 0 : tangential + b * step;
+    if (end > stop) continue;
+    if (!isCompressing) return total;
+    isCompressing = false;
+    normal = 0;
+  }
+  return null;
+}
+
 class ContactTransitions extends ContactForces {
   // Impulses of contacts that approach, then new modes. Returns the changes [{j, kind}], or sets `failure`.
   meet(t, x, touching, plastic, rest, hint) {
@@ -33,7 +66,8 @@ class ContactTransitions extends ContactForces {
       const all = plastic.map(() => true), fault = this.apply(t, x, u, touching, all, false, hit);
       return fault !== null ? fault : this.apply(t, x, u, touching, all, true, hit);
     }
-    if (this.order === "simultaneous") return this.apply(t, x, u, touching, plastic, false, hit);
+    const isEnergetic = this.law === "stronge";  // of one contact at a time
+    if (this.order === "simultaneous" && !isEnergetic) return this.apply(t, x, u, touching, plastic, false, hit);
     for (let count = 0; count < 10000; ++count) {
       let fastest = -1, least = -this.negligible();
       for (const j of touching) {
@@ -41,7 +75,7 @@ class ContactTransitions extends ContactForces {
         if (speed < least) [fastest, least] = [j, speed];
       }
       if (fastest < 0) return null;
-      const fault = this.apply(t, x, u, [fastest], plastic, false, hit);
+      const fault = isEnergetic ? this.collide(t, x, u, fastest, plastic[fastest], hit) : this.apply(t, x, u, [fastest], plastic, false, hit);
       if (fault !== null) return fault;
     }
     return touching[0];
@@ -86,6 +120,27 @@ class ContactTransitions extends ContactForces {
     rows.forEach(({kind, j}, i) => {
       if (kind !== "friction" && this.contacts[j].unilateral && approach[i] < -least && total[i] > 0 && !hit.includes(j)) hit.push(j);
     });
+    return null;
+  }
+
+  // The impact of contact j by Stronge's law. Contacts that cannot open hold, without friction.
+  collide(t, x, u, j, isPlastic, hit) {
+    const at = this.contacts[j], {rows, add, friction} = this.problem(t, x, u);
+    add(j, at.normal, this.normalPattern(j, false), "unilateral");
+    if (at.sticks) friction(j, 0, at.dynamic_coefficient);
+    const own = rows.length;
+    this.contacts.forEach((other, i) => { if (!other.unilateral && this.isHeld(i)) add(i, other.normal, this.normalPattern(i, false), "bilateral"); });
+    if (rows.some(({response}) => response === null)) return -1;
+    const G = rows.map(({row}) => rows.map(({response}) => this.change(row, response))), held = rows.map((_, i) => i).slice(own), ours = rows.map((_, i) => i).slice(0, own);
+    // Impulses of the held rows for unit impulses of this contact.
+    const reactions = ours.map((k) => (held.length > 0 ? leastNorm(held.map((i) => held.map((l) => G[i][l])), held.map((i) => -G[i][k])).x : []));
+    const response = ours.map((i) => ours.map((k) => held.reduce((sum, l, a) => sum + G[i][l] * reactions[k][a], G[i][k])));
+    const found = collision({normal: this.speed(rows[0].row, x), nn: response[0][0], restitution: isPlastic ? 0 : this.c[at.restitution],
+                             ...(own > 1 ? {tangential: this.speed(rows[1].row, x), nt: response[0][1], tt: response[1][1], friction: this.c[at.dynamic_coefficient] * this.c[at.normal_scale]} : {})});
+    if (found === null) return j;
+    const impulses = [...ours.map((k) => found[k]), ...held.map((_, a) => ours.reduce((sum, k) => sum + reactions[k][a] * found[k], 0))];
+    rows.forEach(({response: change}, k) => change.forEach((value, i) => { x[this.rates + i] += impulses[k] * value; }));
+    if (!hit.includes(j)) hit.push(j);
     return null;
   }
 

@@ -132,7 +132,9 @@ TEST_CASE(
   const Folder folder;
   folder.write("corner.toml", corner);
   folder.write("struck.toml", struck);
-  folder.write("dropped_bar.toml", dropped_bar);
+  const std::string bar = dropped_bar;
+  folder.write("dropped_bar.toml", bar);
+  folder.write("energetic_bar.toml", std::string(bar).replace(bar.find("poisson"), 7, "stronge"));
   const std::vector<ContactCase> list{{"bouncing_ball", {{"e", 0.7}, {"x_dot", 5}}},
                                       {"stick_slip_belt", {}},
                                       {"R16_disk_on_disk", {}},
@@ -142,7 +144,8 @@ TEST_CASE(
                                       {"arm_with_stops", {{"e", 0.2}}},
                                       {"rocking_block", {{"g", 8}}},
                                       {"ladder", {{"mu", 0.15}}},
-                                      {"dropped_bar.toml", {{"mu", 0.5}}}};
+                                      {"dropped_bar.toml", {{"mu", 0.5}}},
+                                      {"energetic_bar.toml", {}}};
   for (const ContactCase& c : list) {
     CAPTURE(std::string(c.model));
     CAPTURE(in_json(c.set).dump());

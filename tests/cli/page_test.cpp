@@ -85,29 +85,32 @@ initial = { x = 0.5, y = 0, y_dot = 1.5, X = 0.3, X_dot = 1 }
 solve = ["z", "z_dot"]
 )";
 
-// A ball whose impacts follow Stronge's law: the page replays its run.
-const char* const energetic = R"(format = 1
-title = "Ball by Stronge's law"
+// A ball that is pushed by a table of values: the page replays its run.
+const char* const pushed = R"(format = 1
+title = "Ball that is pushed"
 [parameters]
 m = "1 kg"
 g = "9.81 m/s^2"
+[inputs]
+F = { unit = "N" }
 [[particle]]
 name = "ball"
 mass = "m"
 position = { cartesian = ["x", "y"] }
 [[force]]
 gravity = "-g*E2"
+[[force]]
+generalized = { x = "F" }
 [[constraint]]
 name = "floor"
 holonomic = "y"
 holds = "unilateral"
 restitution = 0.5
 friction = { static = 0.3, dynamic = 0.2 }
-[impacts]
-law = "stronge"
 [scene.default]
 t = [0, 1]
 initial = { x_dot = 1, y = 1 }
+inputs = { F = { t = [0, 0.5], value = [5, 0] } }
 outputs = ["energy", "reaction.floor"]
 )";
 
@@ -312,7 +315,7 @@ TEST_CASE("page: reports show complete equations, replay the run, and integrate 
   folder.write("chain_10.toml", replaced(source("models/S6_chain_6.toml"), "n = 6", "n = 10"));
   folder.write("brick.toml", brick);
   folder.write("bowl.toml", bowl);
-  folder.write("energetic.toml", energetic);
+  folder.write("pushed.toml", pushed);
   const std::vector<PageCase> list{{"brick.toml", true, "a", 0.5, "", "corner"},
                                    {"P7_moving_sphere", true, "m", 2, "", "", true},
                                    {"S5_double_pendulum", true, "m2", 1.5, "P2"},
@@ -325,7 +328,7 @@ TEST_CASE("page: reports show complete equations, replay the run, and integrate 
                                    {"R16_sphere_on_sphere"},
                                    {"R16_disk_on_disk", true},
                                    {"rocking_block", true, "b", 0.3},
-                                   {"energetic.toml", false},
+                                   {"pushed.toml", false},
                                    {"six_bar_spatial", true, "k", 170, "plate"},
                                    {"n_four_bar_2", true, "", 0, "K1"},
                                    {"rimless_wheel", true, "gamma", 0.1},

@@ -77,8 +77,6 @@ class Live {
  private:
   /// Feature of the model that the page's integrator does not support, or "".
   std::string obstacle() const {
-    if (!s_.program.contact_set.empty() && s_.program.contact_set.law == eom::contacts::ImpactLaw::stronge)
-      return "Stronge's law of impacts is not computed on a page";
     if (s_.program.contact_set.contacts.size() > most_contacts)
       return fmt::format("its {} contacts would take too long", s_.program.contact_set.contacts.size());
     if (!s_.scene.jumps.functions.empty())
