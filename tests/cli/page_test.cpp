@@ -327,7 +327,7 @@ TEST_CASE("page: reports show complete equations, replay the run, and integrate 
                                    {"R15_pin_joint", true, "m1", 2},
                                    {"R16_sphere_on_sphere"},
                                    {"R16_disk_on_disk", true},
-                                   {"rocking_block", true, "b", 0.3},
+                                   {"rocking_block", true, "b", 0.3, "block"},
                                    {"pushed.toml", false},
                                    {"six_bar_spatial", true, "k", 170, "plate"},
                                    {"n_four_bar_2", true, "", 0, "K1"},
