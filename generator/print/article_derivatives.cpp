@@ -135,8 +135,8 @@ void write_partial_derivatives(Article& a, const DisplayForm& form, std::vector<
           {reading::make_formula(FormulaKind::rate, {partial(letters.T, 1)}), arrange(p.rate, Layout::terms)}));
     add(std::move(momentum));
     add({reading::relation({partial(letters.T, 0), arrange(p.kinetic)}),
-         reading::relation({partial(letters.U, 0), arrange(p.potential)}),
-         reading::relation({mark("Q", {coordinate(p.coordinate, 0)}), arrange(p.force, Layout::terms)})});
+         reading::relation({partial(letters.U, 0), arrange(with_brackets(p.potential, form.powers))}),
+         reading::relation({mark("Q", {coordinate(p.coordinate, 0)}), arrange(with_brackets(p.force, form.powers), Layout::terms)})});
     std::string why;
     for (const Formula& f : shown) why = why.empty() ? a.out.reason_too_long(f) : why;
     if (why.empty())

@@ -156,15 +156,16 @@ void write_routh(Article& a) {
       "With these the Routhian, the Lagrangian of Approach II less " +
       std::string(form.cyclic.size() == 1 ? "the product of momentum and rate" : "the products of momenta and rates") +
       ", is");
-  a.out.display({reading::relation({mark("cal R"), reading::arrange_fractions(form.routhian)})});
+  a.out.display({reading::relation({mark("cal R"), reading::arrange_fractions(-with_powers(-form.routhian, form.powers))})});
   if (form.equations.empty()) return;
   a.out.paragraph(form.equations.size() == 1 ? "and one equation is left:" : "and the equations that are left are");
   for (const reading::Equation& equation : form.equations)
-    a.out.numbered_display(a.out.next_number(), explicit_form(equation, true));
+    a.out.numbered_display(a.out.next_number(), explicit_form(equation, form.powers, true));
   if (!form.energy) return;
   a.out.paragraph("The reduced motion keeps");
   a.out.display(
-      {reading::relation({mark(free_letter(a.model, "h", "cal H")), reading::arrange_fractions(*form.energy)})});
+      {reading::relation({mark(free_letter(a.model, "h", "cal H")),
+                          reading::arrange_fractions(with_powers(*form.energy, form.powers))})});
 }
 
 void write_steady_motions(Article& a) {

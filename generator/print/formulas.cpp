@@ -16,6 +16,7 @@ using reading::Formula;
 using reading::FormulaKind;
 using reading::Layout;
 using reading::mark;
+using reading::PowerOfSum;
 using reading::Sum;
 using reading::Symbol;
 using reading::SymbolKind;
@@ -164,8 +165,8 @@ Formula read_or_dots(const Mechanics& m, symbolic::Ref expression) {
 }
 
 // Q + sum lambda_k dpsi_k/dq, with a positive term first if there is one.
-Formula right_side(const Equation& equation) {
-  std::vector<Formula> terms = reading::arranged_terms(equation.force, Layout::terms);
+Formula right_side(const Equation& equation, const std::vector<PowerOfSum>& powers) {
+  std::vector<Formula> terms = reading::arranged_terms(with_brackets(equation.force, powers), Layout::terms);
   for (const reading::MultiplierTerm& term : equation.multipliers)
     terms.push_back(times_multiplier(term.constraint, term.slope));
   const auto positive =
@@ -176,21 +177,23 @@ Formula right_side(const Equation& equation) {
 
 }  // namespace
 
-Formula momentum_form(const Equation& equation, bool joined) {
+Formula momentum_form(const Equation& equation, const std::vector<PowerOfSum>& powers, bool joined) {
   std::vector<Formula> terms;
   if (!equation.momentum.is_zero()) {
     terms.push_back(reading::make_formula(FormulaKind::rate, {arrange(equation.momentum, Layout::terms)}));
   }
-  for (Formula& term : joined ? reading::arranged_fractions(-equation.slope, Layout::terms)
-                              : reading::arranged_terms(-equation.slope, Layout::terms))
+  const Sum slope = with_brackets(-equation.slope, powers);
+  for (Formula& term : joined ? reading::arranged_fractions(slope, Layout::terms)
+                              : reading::arranged_terms(slope, Layout::terms))
     terms.push_back(std::move(term));
-  return reading::relation({reading::sum(std::move(terms)), right_side(equation)});
+  return reading::relation({reading::sum(std::move(terms)), right_side(equation, powers)});
 }
 
-Formula explicit_form(const Equation& equation, bool joined) {
-  return reading::relation({joined ? reading::arrange_fractions(equation.expanded, Layout::terms)
-                                   : arrange(equation.expanded, Layout::terms),
-                            right_side(equation)});
+Formula explicit_form(const Equation& equation, const std::vector<PowerOfSum>& powers, bool joined) {
+  const Sum expanded = with_brackets(equation.expanded, powers);
+  return reading::relation(
+      {joined ? reading::arrange_fractions(expanded, Layout::terms) : arrange(expanded, Layout::terms),
+       right_side(equation, powers)});
 }
 
 void add_angular_velocities(const DisplayForm& form, std::vector<Statement>& out) {
@@ -219,7 +222,7 @@ void add_energies(const Mechanics& m, const DisplayForm& form, std::vector<State
           (*form.by_degree)[static_cast<std::size_t>(k)]);
     }
   }
-  add(two ? "constrained potential energy" : "potential energy", mark(letters.U), form.potential);
+  add(two ? "constrained potential energy" : "potential energy", mark(letters.U), with_powers(form.potential, form.powers));
 }
 
 void add_lagrangian(const Mechanics& m, const DisplayForm& form, std::vector<Statement>& out) {
@@ -228,7 +231,8 @@ void add_lagrangian(const Mechanics& m, const DisplayForm& form, std::vector<Sta
   std::vector<Formula> terms = form.body_rotations.empty() ? reading::arranged_terms(form.kinetic, Layout::grouped)
                                                            : std::vector<Formula>{kinetic_formula(form)};
   if (!form.potential.is_zero()) {
-    for (Formula& term : reading::arranged_terms(-form.potential, Layout::grouped)) terms.push_back(std::move(term));
+    for (Formula& term : reading::arranged_terms(-with_powers(form.potential, form.powers), Layout::grouped))
+      terms.push_back(std::move(term));
   }
   out.push_back({"lagrangian", "Lagrangian", "", "", reading::relation({L, reading::sum(std::move(terms))})});
 }
@@ -319,9 +323,9 @@ void add_equations(const Mechanics& m, const DisplayForm& form, std::vector<Stat
     return;
   }
   for (const bool of_motion : {true, false})
-    add("equations", of_motion, [](const Equation& e) { return momentum_form(e); });
+    add("equations", of_motion, [&](const Equation& e) { return momentum_form(e, form.powers); });
   for (const bool of_motion : {true, false})
-    add("explicit", of_motion, [](const Equation& e) { return explicit_form(e); });
+    add("explicit", of_motion, [&](const Equation& e) { return explicit_form(e, form.powers); });
 }
 
 void add_states(const Mechanics& m, std::vector<Statement>& out) {

@@ -41,9 +41,11 @@ void add_statements(const mechanics::Mechanics& mechanics, const reading::Displa
                     const std::vector<std::string>& show, std::vector<Statement>& out);
 
 /// d/dt(dL/dqdot) - dL/dq = Q + lambda grad psi, eq. (2.109). `joined`: fractions with factors in one.
-reading::Formula momentum_form(const reading::Equation& equation, bool joined = false);
+reading::Formula momentum_form(const reading::Equation& equation, const std::vector<reading::PowerOfSum>& powers,
+                               bool joined = false);
 /// M qddot + h = Q + lambda grad psi.
-reading::Formula explicit_form(const reading::Equation& equation, bool joined = false);
+reading::Formula explicit_form(const reading::Equation& equation, const std::vector<reading::PowerOfSum>& powers,
+                               bool joined = false);
 
 void add_energies(const mechanics::Mechanics& mechanics, const reading::DisplayForm& form, std::vector<Statement>& out);
 /// Components of the angular velocities along the axes of the inertia tensors.

@@ -59,13 +59,15 @@ std::vector<PrintedFormula> render_linear(const mechanics::Mechanics& m, const L
   }
   Entries entries(form, out);
   entries.show(form.along_motion, "along a motion");
+  const std::vector<reading::PowerOfSum> powers = reading::powers_of_sums(m);
   for (std::size_t i = 0; i < form.rest_residuals.size(); ++i) {
     if (form.rest_residuals[i].is_zero()) continue;  // every configuration is an equilibrium
     const auto& terms = form.rest_residuals[i].terms();
     const bool all_are_subtracted =
         std::all_of(terms.begin(), terms.end(), [](const auto& term) { return cln::minusp(term.second); });
     out.push_back({"linear", "", m.model->coordinates[form.coordinates[i]].name, "at rest where",
-                   reading::relation({arrange(all_are_subtracted ? -form.rest_residuals[i] : form.rest_residuals[i]),
+                   reading::relation({arrange(with_brackets(
+                                          all_are_subtracted ? -form.rest_residuals[i] : form.rest_residuals[i], powers)),
                                       reading::number(0)})});
   }
   entries.show(form.at_rest, "at rest");

@@ -24,7 +24,8 @@ bool is_length(const Formula& f) {
 
 bool is_shortened(const Statement& s) {
   return s.left_out.empty() &&
-         (s.key == "energies" || s.key == "lagrangian" || s.key == "equations" || s.key == "explicit");
+         (s.key == "energies" || s.key == "lagrangian" || s.key == "equations" || s.key == "explicit" ||
+          s.key == "solved");
 }
 
 void visit(Formula& f, const std::function<void(Formula&)>& action) {

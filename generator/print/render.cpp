@@ -51,7 +51,7 @@ PrintedFormula render_expression(const mechanics::Mechanics& mechanics, std::str
   PrintedFormula item;
   item.key = std::move(key);
   item.name = std::move(name);
-  const reading::Formula formula = reading::arrange(expression);
+  const reading::Formula formula = reading::arrange(with_powers(expression, reading::powers_of_sums(mechanics)));
   item.text = print(formula, notation, Format::text);
   item.latex = print(formula, notation, Format::latex);
   item.mathml = print(formula, notation, Format::mathml);

@@ -27,13 +27,13 @@ std::vector<PrintedFormula> render_routh(const mechanics::Mechanics& m, const Ro
               {reading::symbol({symbolic::SymbolKind::coordinate, c, 1}), reading::arrange_fractions(form.rates[i])}));
     }
     add("Routhian", "", "Routhian",
-        reading::relation({reading::mark("cal R"), reading::arrange_fractions(form.routhian)}));
+        reading::relation({reading::mark("cal R"), reading::arrange_fractions(-with_powers(-form.routhian, form.powers))}));
     for (const reading::Equation& equation : form.equations) {
       const std::string& name = m.model->coordinates[equation.coordinate].name;
-      add("", name, "reduced motion", momentum_form(equation, true));
-      add("", name, "reduced motion", explicit_form(equation, true));
+      add("", name, "reduced motion", momentum_form(equation, form.powers, true));
+      add("", name, "reduced motion", explicit_form(equation, form.powers, true));
     }
-    if (form.energy) add("energy", "", "energy of the reduced motion", reading::arrange_fractions(*form.energy));
+    if (form.energy) add("energy", "", "energy of the reduced motion", reading::arrange_fractions(with_powers(*form.energy, form.powers)));
   }
   return render(m, out);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "print/formulas.hpp"
+#include "print/named_lengths.hpp"
 #include "print/render.hpp"
 
 namespace eomgen::print {
@@ -52,7 +53,8 @@ class SolvedStatements {
     }
   }
 
-  void show(std::string name, std::string of, const char* role, Formula left, const Sum& value) {
+  void show(std::string name, std::string of, const char* role, Formula left, const Sum& expanded) {
+    const Sum value = with_brackets(expanded, form_.powers);
     if (value.size() > most_terms) {
       Statement omitted =
           left_out("solved", std::move(name), role, "it has " + std::to_string(value.size()) + " terms");
@@ -80,6 +82,7 @@ std::vector<PrintedFormula> render_solved(const Mechanics& m, const SolvedForm& 
                  form.skip_reason + "; eomgen run --output reaction.NAME gives their values"));
   else
     SolvedStatements(m, form, out).add();
+  name_lengths(m, out);
   return render(m, out);
 }
 

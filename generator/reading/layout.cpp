@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "reading/formula.hpp"
+#include "reading/power_of_sum.hpp"
 #include "reading/rational_function.hpp"
 
 namespace eomgen::reading {
@@ -32,6 +33,8 @@ bool is_fixed(const Atom& atom) {  // parameters and numbers: grouped last
                                                          atom.symbol.kind == SymbolKind::multiplier));
 }
 
+Formula bracket(const Sum& rest);
+
 Formula factor_formula(const Factor& factor) {
   const Atom& atom = *factor.atom;
   const Rational exponent = cln::abs(factor.exponent);
@@ -40,7 +43,14 @@ Formula factor_formula(const Factor& factor) {
     case Op::symbol: base = symbol(atom.symbol); break;
     case Op::pi: base.kind = FormulaKind::pi; break;
     case Op::add: base = arrange(atom.args[0]); break;
-    case Op::pow: base = make_formula(FormulaKind::power, {arrange(atom.args[0]), arrange(atom.args[1])}); break;
+    case Op::pow:
+      if (is_bracket(atom)) {
+        base = bracket(atom.args[0]);
+        base.keeps_sign = true;
+      } else {
+        base = make_formula(FormulaKind::power, {arrange(atom.args[0]), arrange(atom.args[1])});
+      }
+      break;
     default:
       base.kind = FormulaKind::call;
       base.op = atom.op;
@@ -83,7 +93,7 @@ Formula opposite_sum(Formula f) {
 }
 
 bool subtracts(const Formula& f) {
-  return f.kind == FormulaKind::sum &&
+  return f.kind == FormulaKind::sum && !f.keeps_sign &&
          std::any_of(f.args.begin(), f.args.end(), [](const Formula& t) { return t.kind == FormulaKind::negative; });
 }
 
@@ -321,7 +331,7 @@ std::optional<Formula> number_in_front(const Sum& whole) {
   for (const auto& [monomial, coefficient] : whole.terms()) {
     if (cln::abs(coefficient) == number) ++simple;
     for (const Factor& factor : monomial) {
-      if (moves(*factor.atom)) return std::nullopt;
+      if (moves(*factor.atom) || is_bracket(*factor.atom)) return std::nullopt;
     }
   }
   if (3 * simple < 2 * whole.size()) return std::nullopt;

@@ -3,8 +3,9 @@
 // numbers or hashes, so that every process prints the same.
 #include <algorithm>
 #include <array>
+#include <iterator>
 
-#include "reading/sum.hpp"
+#include "reading/power_of_sum.hpp"
 
 namespace eomgen::reading {
 namespace {
@@ -103,6 +104,27 @@ int compare_display(const Monomial& a, const Monomial& b) {
   return compare_from(a, b, 0, coordinates - 1);
 }
 
+/// A term with the first terms of its brackets in their place: k (r - l0) stands where k r would.
+Monomial opened(const Monomial& monomial) {
+  Monomial result;
+  std::copy_if(monomial.begin(), monomial.end(), std::back_inserter(result),
+               [](const Factor& f) { return !is_bracket(*f.atom); });
+  for (const Factor& factor : monomial) {
+    if (!is_bracket(*factor.atom)) continue;
+    const Monomial first = display_order(factor.atom->args[0]).front().first;
+    for (Rational n = factor.exponent; cln::plusp(n); n = n - 1) result = multiply(result, first).terms().begin()->first;
+  }
+  return result;
+}
+
+int compare_placed(const Monomial& a, const Monomial& b) {
+  const auto has_bracket = [](const Monomial& monomial) {
+    return std::any_of(monomial.begin(), monomial.end(), [](const Factor& f) { return is_bracket(*f.atom); });
+  };
+  if (!has_bracket(a) && !has_bracket(b)) return compare_display(a, b);
+  return compare_display(opened(a), opened(b));
+}
+
 }  // namespace
 
 int compare(const Atom& a, const Atom& b) {
@@ -145,7 +167,7 @@ int compare(const Sum& a, const Sum& b) {
 std::vector<std::pair<Monomial, Rational>> display_order(const Sum& sum) {
   std::vector<std::pair<Monomial, Rational>> terms(sum.terms().begin(), sum.terms().end());
   std::stable_sort(terms.begin(), terms.end(),
-                   [](const auto& a, const auto& b) { return compare_display(a.first, b.first) < 0; });
+                   [](const auto& a, const auto& b) { return compare_placed(a.first, b.first) < 0; });
   return terms;
 }
 
@@ -153,7 +175,7 @@ bool has_negative_leading_term(const Sum& sum) {
   if (sum.is_zero()) return false;
   auto first = sum.terms().begin();
   for (auto term = std::next(first); term != sum.terms().end(); ++term) {
-    if (compare_display(term->first, first->first) < 0) first = term;
+    if (compare_placed(term->first, first->first) < 0) first = term;
   }
   return cln::minusp(first->second);
 }

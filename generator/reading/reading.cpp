@@ -114,6 +114,15 @@ void write_constrained_roots(const Mechanics& m, DisplayForm& form) {
   }
 }
 
+/// The brackets of springs. None beyond the budget.
+void add_powers(const Mechanics& m, GinacBridge& bridge, DisplayForm& form) {
+  if (form.is_unexpanded) return;
+  within_budget([&] {
+    form.powers = powers_of_sums(m, bridge, form.approach == system::Approach::two ? imposed_values(m, bridge)
+                                                                                  : std::map<Symbol, Sum>{});
+  });
+}
+
 /// The rotations; in Approach II with the constraints imposed. Throws work::BudgetExceeded.
 std::vector<DisplayRotation> add_rotations(const Mechanics& m, GinacBridge& bridge, DisplayForm& form) {
   std::vector<DisplayRotation> body_rotations;
@@ -175,6 +184,7 @@ DisplayForm derive_display_form(const Mechanics& given, system::Approach approac
   }
   if (extent == Extent::whole || !form.is_unexpanded) add_constraints(m, bridge, extent, form);
   write_constrained_roots(m, form);
+  add_powers(m, bridge, form);
   return form;
 } catch (const std::domain_error&) {
   throw no_value_error(given);

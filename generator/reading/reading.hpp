@@ -12,6 +12,7 @@
 
 #include "mechanics/mechanics.hpp"
 #include "reading/formula.hpp"
+#include "reading/power_of_sum.hpp"
 #include "system/equation_system.hpp"
 
 namespace eomgen::reading {
@@ -92,6 +93,7 @@ struct DisplayForm {
   Sum translation;                              // the part of `kinetic` without rotations; 0 if is_unexpanded
   std::vector<DisplayRotation> body_rotations;  // in II with the constraints imposed
   std::string rotations_skip_reason;            // why they are omitted, if bodies rotate
+  std::vector<PowerOfSum> powers;               // of the potential: brackets that energies and equations keep
   std::optional<std::array<Sum, 3>> by_degree;  // II: T2, T1, T0, eq. (3.50)
   std::vector<DisplayConstraint> constraints;
   std::vector<Equation> equations;  // I: all coordinates, II: the free ones

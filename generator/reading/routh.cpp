@@ -102,7 +102,8 @@ RouthForm routh_form(const Mechanics& m, const std::vector<std::uint32_t>& cycli
   } catch (const work::BudgetExceeded&) {
     form.is_unexpanded = true;
   }
-  if (form.is_unexpanded) form = RouthForm{true, cyclic, {}, {}, {}, {}, {}};
+  form.powers = two.powers;
+  if (form.is_unexpanded) form = RouthForm{true, cyclic, {}, {}, {}, {}, {}, {}};
   return form;
 } catch (const std::domain_error&) {
   throw no_value_error(m);

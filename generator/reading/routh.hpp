@@ -11,6 +11,7 @@ namespace eomgen::reading {
 struct RouthForm {
   bool is_unexpanded = false;  // too large to expand, or the momenta do not determine the rates; the rest is empty
   std::vector<std::uint32_t> cyclic;
+  std::vector<PowerOfSum> powers;   // of the potential, as in DisplayForm
   std::vector<Sum> momenta;         // dL/dqdot_c, per cyclic coordinate
   std::vector<Sum> rates;           // qdot_c as functions of the momenta
   Sum routhian;                     // L - sum p_c qdot_c

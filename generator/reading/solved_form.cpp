@@ -83,6 +83,7 @@ class Solver {
     }
     if (form_.mode == FrictionMode::given) find_closed_forms();
     add_dependent_accelerations();
+    add_powers();
     return std::move(form_);
   }
 
@@ -91,6 +92,14 @@ class Solver {
   Sum imposed(const Sum& sum) {
     Sum result = values_.empty() ? sum : bridge_.substitute(sum, values_);
     return held_.empty() ? result : bridge_.substitute(result, held_);
+  }
+  void add_powers() {
+    std::map<Symbol, Sum> all = values_;
+    all.insert(held_.begin(), held_.end());
+    try {
+      form_.powers = powers_of_sums(m_, bridge_, all);
+    } catch (const work::BudgetExceeded&) {
+    }
   }
   Sum multiplier(std::uint32_t k) { return bridge_.atom_table()({SymbolKind::multiplier, k, 0}); }
 

@@ -27,6 +27,7 @@ struct ClosedForm {
 struct SolvedForm {
   std::string skip_reason;  // if set, the rest is empty
   FrictionMode mode = FrictionMode::given;
+  std::vector<PowerOfSum> powers;                 // of the potential, as in DisplayForm
   std::vector<SolvedAcceleration> accelerations;  // of all coordinates that no constraint fixes in time
   std::vector<std::optional<Sum>> multipliers;    // per Mechanics::constraints entry; none: not imposed, undetermined
   std::vector<std::optional<Sum>> friction;       // phi; empty unless `holding`
