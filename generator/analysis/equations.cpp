@@ -107,7 +107,8 @@ void add_conserved(mechanics::Mechanics& mechanics, reading::DisplayForms& forms
 
 // Only on explicit request: another form of equations that `all` shows already.
 void add_routh(mechanics::Mechanics& mechanics, reading::DisplayForms& forms, const std::vector<std::string>& show,
-               std::vector<print::PrintedFormula>& items, std::vector<std::string>& notes) {
+               print::LengthLetters& letters, std::vector<print::PrintedFormula>& items,
+               std::vector<std::string>& notes) {
   if (std::find(show.begin(), show.end(), "routh") == show.end()) return;
   system::EquationSystem system = derive::lagrange(mechanics, system::Approach::two);
   const std::vector<std::uint32_t> cyclic =
@@ -116,7 +117,7 @@ void add_routh(mechanics::Mechanics& mechanics, reading::DisplayForms& forms, co
   if (cyclic.empty()) notes.emplace_back("no coordinate is cyclic: there is nothing to reduce");
   if (form.is_unexpanded)
     notes.emplace_back("the reduction is too long to be written out, or the momenta do not give the rates");
-  for (print::PrintedFormula& item : print::render_routh(mechanics, form)) items.push_back(std::move(item));
+  for (print::PrintedFormula& item : print::render_routh(mechanics, form, &letters)) items.push_back(std::move(item));
 }
 
 /// The values of coordinates and inputs at the start of a scene, as formulas. Rates are 0 in an equilibrium.
@@ -154,7 +155,7 @@ std::map<reading::Symbol, reading::Sum> start_of_scene(mechanics::Mechanics& m, 
 
 // Only on explicit request: n^2 entries of four matrices, twice.
 void add_linear(mechanics::Mechanics& mechanics, reading::DisplayForms& forms, const EquationsRequest& request,
-                std::vector<print::PrintedFormula>& items) {
+                print::LengthLetters& letters, std::vector<print::PrintedFormula>& items) {
   const std::vector<std::string>& show = request.show;
   if (std::find(show.begin(), show.end(), "linear") == show.end()) {
     if (request.about.empty()) return;
@@ -167,17 +168,19 @@ void add_linear(mechanics::Mechanics& mechanics, reading::DisplayForms& forms, c
       items.push_back(std::move(item));
     return;
   }
-  for (print::PrintedFormula& item : print::render_linear(mechanics, forms.linear())) items.push_back(std::move(item));
+  for (print::PrintedFormula& item : print::render_linear(mechanics, forms.linear(), &letters))
+    items.push_back(std::move(item));
 }
 
 // Only on explicit request: the equations that `all` shows, solved.
 void add_solved(const mechanics::Mechanics& mechanics, reading::DisplayForms& forms,
-                const std::vector<std::string>& show, std::vector<print::PrintedFormula>& items) {
+                const std::vector<std::string>& show, print::LengthLetters& letters,
+                std::vector<print::PrintedFormula>& items) {
   if (std::find(show.begin(), show.end(), "solved") == show.end()) return;
   std::vector<reading::FrictionMode> modes{reading::FrictionMode::given};
   if (reading::can_hold(mechanics)) modes.push_back(reading::FrictionMode::holding);
   for (const reading::FrictionMode mode : modes) {
-    for (print::PrintedFormula& item : print::render_solved(mechanics, forms.solved(mode)))
+    for (print::PrintedFormula& item : print::render_solved(mechanics, forms.solved(mode), &letters))
       items.push_back(std::move(item));
   }
 }
@@ -204,13 +207,14 @@ Equations equations(std::shared_ptr<const model::Model> model, const EquationsRe
                                                                                          : system::Approach::two);
   Equations result;
   result.approach = form.approach;
-  result.items = print::render(mechanics, form, request.show, &result.interrupted);
+  print::LengthLetters letters;
+  result.items = print::render(mechanics, form, request.show, &result.interrupted, &letters);
   try {
     if (!result.interrupted) {
       add_conserved(mechanics, forms, request.show, result.items);
-      add_routh(mechanics, forms, request.show, result.items, result.notes);
-      add_linear(mechanics, forms, request, result.items);
-      add_solved(mechanics, forms, request.show, result.items);
+      add_routh(mechanics, forms, request.show, letters, result.items, result.notes);
+      add_linear(mechanics, forms, request, letters, result.items);
+      add_solved(mechanics, forms, request.show, letters, result.items);
     }
   } catch (const work::Interrupted&) {
     result.interrupted = true;

@@ -5,6 +5,7 @@
 
 #include "model/names.hpp"
 #include "print/article_parts.hpp"
+#include "print/named_lengths.hpp"
 
 namespace eomgen::print {
 
@@ -34,6 +35,25 @@ std::vector<Formula> Article::formulas(const std::vector<Statement>& statements)
       left_out.push_back({s.name + (s.role.empty() ? "" : ", " + s.role), s.left_out});
   }
   return result;
+}
+
+void Article::find_lengths() {
+  std::vector<Statement> all;
+  for (const reading::DisplayForm* form : {&one, &two}) {
+    if (form->is_unexpanded) continue;
+    add_energies(m, *form, all);
+    add_equations(m, *form, all);
+  }
+  const auto size = static_cast<std::ptrdiff_t>(all.size());
+  name_lengths(m, all, &letters);
+  lengths.assign(all.begin() + size, all.end());
+}
+
+Formula Article::with_letters(Formula formula) const {
+  LengthLetters known = letters;
+  std::vector<Statement> all{{"equations", "", "", "", formula}};
+  name_lengths(m, all, &known);
+  return all.size() == 1 ? all[0].formula : formula;  // others would have no definition
 }
 
 namespace {
@@ -66,6 +86,7 @@ std::string latex_document(const Mechanics& m, const reading::DisplayForm& one, 
   const model::Model& model = *m.model;
   Article article{m, model, one, two, findings ? &*findings : nullptr, out, omitted};
   if (findings) article.left_out = findings->left_out;
+  article.find_lengths();
   for (const DocumentPart& part : document_parts) {
     if (article.omits(part.name)) article.left_out.push_back({std::string(part.what), "omitted on request"});
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "print/article_parts.hpp"
+#include "print/named_lengths.hpp"
 #include "reading/partials.hpp"
 
 namespace eomgen::print {
@@ -48,15 +49,20 @@ void write_energies(Article& a) {
     std::vector<Statement> all;
     if (!form.is_unexpanded) add_angular_velocities(form, all);
     add_energies(a.m, form, all);
+    name_lengths(a.m, all, &a.letters);
     a.out.display(a.formulas(all));
     if (!form.rotations_skip_reason.empty()) a.left_out.push_back({"angular velocities", form.rotations_skip_reason});
   };
   const bool body_rotations = !a.one.body_rotations.empty();
   if (body_rotations) a.out.paragraph(angular_velocity_legend(a));
   show(a.one);
-  if (!a.approaches_differ()) return;
-  a.out.paragraph("With the constraints built in these are");
-  show(a.two);
+  if (a.approaches_differ()) {
+    a.out.paragraph("With the constraints built in these are");
+    show(a.two);
+  }
+  if (a.lengths.empty()) return;
+  a.out.paragraph("Here and in the equations below,");
+  a.out.display(a.formulas(a.lengths));
 }
 
 void write_lagrange_law(Article& a) {
@@ -123,6 +129,7 @@ void write_partial_derivatives(Article& a, const DisplayForm& form, std::vector<
       return reading::make_formula(FormulaKind::partial, {mark(letter), coordinate(p.coordinate, order)});
     };
     const auto add = [&](std::vector<Formula> formulas) {  // on one line if they fit
+      for (Formula& f : formulas) f = a.with_letters(std::move(f));
       Formula together = reading::make_formula(FormulaKind::list, formulas);
       if (formulas.size() > 1 && a.out.fits_on_a_line(together))
         shown.push_back(std::move(together));
@@ -136,7 +143,8 @@ void write_partial_derivatives(Article& a, const DisplayForm& form, std::vector<
     add(std::move(momentum));
     add({reading::relation({partial(letters.T, 0), arrange(p.kinetic)}),
          reading::relation({partial(letters.U, 0), arrange(with_brackets(p.potential, form.powers))}),
-         reading::relation({mark("Q", {coordinate(p.coordinate, 0)}), arrange(with_brackets(p.force, form.powers), Layout::terms)})});
+         reading::relation(
+             {mark("Q", {coordinate(p.coordinate, 0)}), arrange(with_brackets(p.force, form.powers), Layout::terms)})});
     std::string why;
     for (const Formula& f : shown) why = why.empty() ? a.out.reason_too_long(f) : why;
     if (why.empty())

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "print/article_parts.hpp"
+#include "print/named_lengths.hpp"
 
 namespace eomgen::print {
 
@@ -91,6 +92,8 @@ class Equations {
     std::vector<Statement> left, right;
     add_equations(m_, a_.one, left);
     add_equations(m_, a_.two, right);
+    name_lengths(m_, left, &a_.letters);
+    name_lengths(m_, right, &a_.letters);
     std::vector<Row> rows;
     const auto place = [&](const Statement& s) -> Row& {
       const auto index = std::find_if(a_.model.coordinates.begin(), a_.model.coordinates.end(),

@@ -74,7 +74,7 @@ std::string reason_of(const Article& a, const ConservedFinding& c) {
 std::optional<Formula> value_of(Article& a, const ConservedFinding& c) {
   try {
     const reading::Sum sum = c.named ? *c.named : reading::display_sum(a.m, c.expression);
-    Formula value = reading::arrange(sum);
+    Formula value = a.with_letters(reading::arrange(with_powers(sum, reading::powers_of_sums(a.m))));
     const std::string why = a.out.reason_too_long(value);
     if (why.empty()) return value;
     a.left_out.push_back({c.title, why});
@@ -156,16 +156,16 @@ void write_routh(Article& a) {
       "With these the Routhian, the Lagrangian of Approach II less " +
       std::string(form.cyclic.size() == 1 ? "the product of momentum and rate" : "the products of momenta and rates") +
       ", is");
-  a.out.display({reading::relation({mark("cal R"), reading::arrange_fractions(-with_powers(-form.routhian, form.powers))})});
+  a.out.display(
+      {reading::relation({mark("cal R"), reading::arrange_fractions(-with_powers(-form.routhian, form.powers))})});
   if (form.equations.empty()) return;
   a.out.paragraph(form.equations.size() == 1 ? "and one equation is left:" : "and the equations that are left are");
   for (const reading::Equation& equation : form.equations)
-    a.out.numbered_display(a.out.next_number(), explicit_form(equation, form.powers, true));
+    a.out.numbered_display(a.out.next_number(), a.with_letters(explicit_form(equation, form.powers, true)));
   if (!form.energy) return;
   a.out.paragraph("The reduced motion keeps");
-  a.out.display(
-      {reading::relation({mark(free_letter(a.model, "h", "cal H")),
-                          reading::arrange_fractions(with_powers(*form.energy, form.powers))})});
+  a.out.display({reading::relation(
+      {mark(free_letter(a.model, "h", "cal H")), reading::arrange_fractions(with_powers(*form.energy, form.powers))})});
 }
 
 void write_steady_motions(Article& a) {

@@ -7,6 +7,7 @@
 #include "print/formulas.hpp"
 #include "print/latex_writer.hpp"
 #include "print/letters.hpp"
+#include "print/render.hpp"
 #include "reading/partials.hpp"
 
 namespace eomgen::print {
@@ -19,6 +20,8 @@ struct Article {
   LatexWriter& out;
   const std::vector<std::string>& omitted;  // names of document_parts
   std::vector<work::LeftOut> left_out = {};
+  LengthLetters letters = {};           // of lengths in energies and equations
+  std::vector<Statement> lengths = {};  // their definitions
 
   /// Whether the equations of approach II differ from those of approach I.
   bool approaches_differ() const;
@@ -26,6 +29,10 @@ struct Article {
   std::string coordinate_math(std::uint32_t coordinate, std::uint8_t order = 0) const;  // $\theta$
   /// The formulas of statements; omitted ones are listed in `left_out`.
   std::vector<reading::Formula> formulas(const std::vector<Statement>& statements);
+  /// Fills in `letters` and `lengths`.
+  void find_lengths();
+  /// The formula with these letters.
+  reading::Formula with_letters(reading::Formula formula) const;
 };
 
 /// \textbf{..}

@@ -53,6 +53,10 @@ class Multipliers {
     if (solved_ == nullptr || contact.first + a >= solved_->friction.size()) return {};
     return solved_->friction[contact.first + a].value_or(Sum());
   }
+  /// A component as it is displayed: with the brackets of springs, which multipliers contain once they are solved for.
+  Sum with_springs(const Sum& component) const {
+    return solved_ == nullptr ? component : with_brackets(component, solved_->powers);
+  }
   bool is_holding() const { return solved_ != nullptr && solved_->mode == reading::FrictionMode::holding; }
 
  private:
@@ -153,6 +157,7 @@ class BodyForces {
         component = reading::simplify(component + slope * multipliers_.value(k));
       }
       if (component.is_zero()) continue;
+      component = multipliers_.with_springs(component);
       const bool minus = reading::has_negative_leading_term(component);
       Formula term = reading::product({reading::arrange(minus ? -component : component), vector(i)});
       terms.push_back(minus ? reading::negative(std::move(term)) : std::move(term));
@@ -357,7 +362,8 @@ class ParticleForces {
 
   /// Along the vectors of the chart, or along E1, E2, E3 if that is shorter: a force that holds balances weights.
   Formula vector(const reading::Geometry& g, const reading::Components& force) const {
-    if (!multipliers_.is_holding() || g.contravariant_unit.empty()) return combination(force, vectors_of(g));
+    if (!multipliers_.is_holding() || g.contravariant_unit.empty())
+      return combination(with_springs(force), vectors_of(g));
     reading::Components fixed;
     for (std::size_t k = 0; k < 3; ++k) {
       for (std::size_t j = 0; j < 3; ++j) {
@@ -369,9 +375,14 @@ class ParticleForces {
       along_chart += force[k].size();
       along_fixed += fixed[k].size();
     }
-    if (along_fixed > along_chart) return combination(force, vectors_of(g));
-    return combination(
-        fixed, {mark("E", {reading::number(1)}), mark("E", {reading::number(2)}), mark("E", {reading::number(3)})});
+    if (along_fixed > along_chart) return combination(with_springs(force), vectors_of(g));
+    return combination(with_springs(fixed), {mark("E", {reading::number(1)}), mark("E", {reading::number(2)}),
+                                             mark("E", {reading::number(3)})});
+  }
+
+  reading::Components with_springs(reading::Components force) const {
+    for (Sum& component : force) component = multipliers_.with_springs(component);
+    return force;
   }
 
   /// e_j . E_k = sum_i (e_j . a_i) (a^i . E_k).

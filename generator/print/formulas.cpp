@@ -183,8 +183,8 @@ Formula momentum_form(const Equation& equation, const std::vector<PowerOfSum>& p
     terms.push_back(reading::make_formula(FormulaKind::rate, {arrange(equation.momentum, Layout::terms)}));
   }
   const Sum slope = with_brackets(-equation.slope, powers);
-  for (Formula& term : joined ? reading::arranged_fractions(slope, Layout::terms)
-                              : reading::arranged_terms(slope, Layout::terms))
+  for (Formula& term :
+       joined ? reading::arranged_fractions(slope, Layout::terms) : reading::arranged_terms(slope, Layout::terms))
     terms.push_back(std::move(term));
   return reading::relation({reading::sum(std::move(terms)), right_side(equation, powers)});
 }
@@ -222,7 +222,8 @@ void add_energies(const Mechanics& m, const DisplayForm& form, std::vector<State
           (*form.by_degree)[static_cast<std::size_t>(k)]);
     }
   }
-  add(two ? "constrained potential energy" : "potential energy", mark(letters.U), with_powers(form.potential, form.powers));
+  add(two ? "constrained potential energy" : "potential energy", mark(letters.U),
+      with_powers(form.potential, form.powers));
 }
 
 void add_lagrangian(const Mechanics& m, const DisplayForm& form, std::vector<Statement>& out) {
@@ -360,10 +361,11 @@ void add_resets(const Mechanics& m, std::vector<Statement>& out) {
 void add_reactions(const DisplayForm& form, std::vector<Statement>& out) {
   for (const reading::DisplayReaction& reaction : form.reactions) {
     if (!reaction.value) continue;
-    const bool long_sum = reaction.value->size() > 8;  // lines break between terms, not within brackets
+    const Sum value = with_brackets(*reaction.value, form.powers);
+    const bool long_sum = value.size() > 8;  // lines break between terms, not within brackets
     out.push_back({"reactions", reaction.label, "", "",
-                   reading::relation({multiplier(reaction.constraint),
-                                      arrange(*reaction.value, long_sum ? Layout::terms : Layout::grouped)})});
+                   reading::relation(
+                       {multiplier(reaction.constraint), arrange(value, long_sum ? Layout::terms : Layout::grouped)})});
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "print/formulas.hpp"
+#include "print/named_lengths.hpp"
 #include "print/render.hpp"
 #include "reading/linear_form.hpp"
 
@@ -51,7 +52,8 @@ class Entries {
 
 }  // namespace
 
-std::vector<PrintedFormula> render_linear(const mechanics::Mechanics& m, const LinearForm& form) {
+std::vector<PrintedFormula> render_linear(const mechanics::Mechanics& m, const LinearForm& form,
+                                          LengthLetters* letters) {
   std::vector<Statement> out;
   if (!form.skip_reason.empty()) {
     out.push_back(left_out("linear", "", "", form.skip_reason));
@@ -65,12 +67,14 @@ std::vector<PrintedFormula> render_linear(const mechanics::Mechanics& m, const L
     const auto& terms = form.rest_residuals[i].terms();
     const bool all_are_subtracted =
         std::all_of(terms.begin(), terms.end(), [](const auto& term) { return cln::minusp(term.second); });
-    out.push_back({"linear", "", m.model->coordinates[form.coordinates[i]].name, "at rest where",
-                   reading::relation({arrange(with_brackets(
-                                          all_are_subtracted ? -form.rest_residuals[i] : form.rest_residuals[i], powers)),
-                                      reading::number(0)})});
+    out.push_back(
+        {"linear", "", m.model->coordinates[form.coordinates[i]].name, "at rest where",
+         reading::relation(
+             {arrange(with_brackets(all_are_subtracted ? -form.rest_residuals[i] : form.rest_residuals[i], powers)),
+              reading::number(0)})});
   }
   entries.show(form.at_rest, "at rest");
+  name_lengths(m, out, letters);
   return render(m, out);
 }
 

@@ -25,7 +25,7 @@ std::vector<PrintedFormula> render(const mechanics::Mechanics& mechanics, const 
 }
 
 std::vector<PrintedFormula> render(const mechanics::Mechanics& mechanics, const reading::DisplayForm& form,
-                                   const std::vector<std::string>& show, bool* interrupted) {
+                                   const std::vector<std::string>& show, bool* interrupted, LengthLetters* letters) {
   std::vector<Statement> all;
   std::optional<work::DeferInterrupt> kept;  // partial results are printed after a stop request
   try {
@@ -35,7 +35,7 @@ std::vector<PrintedFormula> render(const mechanics::Mechanics& mechanics, const 
     kept.emplace();
     *interrupted = true;
   }
-  name_lengths(mechanics, all);
+  name_lengths(mechanics, all, letters);
   return render(mechanics, all);
 }
 

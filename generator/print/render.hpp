@@ -23,23 +23,33 @@ struct PrintedFormula {
   std::string left_out = {};  // reason if the formula is omitted, else empty
 };
 
+/// The lengths with a letter in the formulas of one reader: s, or s_1, s_2, ...
+struct LengthLetters {
+  std::vector<std::string> texts;  // of the lengths, in the order of their letters
+  bool has_first_alone = false;    // the first is s, not s_1
+};
+
 /// The formulas that `show` selects (keys, or "all"); "equations" includes the explicit form. On an interruption it
 /// throws work::Interrupted, or, if `interrupted` is given, sets it and returns the formulas so far.
 std::vector<PrintedFormula> render(const mechanics::Mechanics& mechanics, const reading::DisplayForm& form,
-                                   const std::vector<std::string>& show, bool* interrupted = nullptr);
+                                   const std::vector<std::string>& show, bool* interrupted = nullptr,
+                                   LengthLetters* letters = nullptr);
 
 /// M, C, K, B under the key "linear": along a motion, or at rest with the equilibrium equations.
-std::vector<PrintedFormula> render_linear(const mechanics::Mechanics& mechanics, const reading::LinearForm& form);
+std::vector<PrintedFormula> render_linear(const mechanics::Mechanics& mechanics, const reading::LinearForm& form,
+                                          LengthLetters* letters = nullptr);
 
 /// The same about one equilibrium, `where` by name, as equations.
 std::vector<PrintedFormula> render_linear(const mechanics::Mechanics& mechanics, const reading::LinearEquations& form,
                                           const std::string& where);
 
 /// Accelerations, multipliers, constraint forces and closed forms under the key "solved".
-std::vector<PrintedFormula> render_solved(const mechanics::Mechanics& mechanics, const reading::SolvedForm& form);
+std::vector<PrintedFormula> render_solved(const mechanics::Mechanics& mechanics, const reading::SolvedForm& form,
+                                          LengthLetters* letters = nullptr);
 
 /// Routh's reduction under the key "routh": constant momenta, the resulting rates, the Routhian, the reduced equations.
-std::vector<PrintedFormula> render_routh(const mechanics::Mechanics& mechanics, const reading::RouthForm& form);
+std::vector<PrintedFormula> render_routh(const mechanics::Mechanics& mechanics, const reading::RouthForm& form,
+                                         LengthLetters* letters = nullptr);
 
 /// The singular sets, which are not part of `form`.
 std::vector<PrintedFormula> render_singular(const mechanics::Mechanics& mechanics);

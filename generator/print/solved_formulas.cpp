@@ -73,7 +73,7 @@ class SolvedStatements {
 
 }  // namespace
 
-std::vector<PrintedFormula> render_solved(const Mechanics& m, const SolvedForm& form) {
+std::vector<PrintedFormula> render_solved(const Mechanics& m, const SolvedForm& form, LengthLetters* letters) {
   std::vector<Statement> out;
   if (!form.skip_reason.empty())
     out.push_back(
@@ -82,7 +82,7 @@ std::vector<PrintedFormula> render_solved(const Mechanics& m, const SolvedForm& 
                  form.skip_reason + "; eomgen run --output reaction.NAME gives their values"));
   else
     SolvedStatements(m, form, out).add();
-  name_lengths(m, out);
+  name_lengths(m, out, letters);
   return render(m, out);
 }
 

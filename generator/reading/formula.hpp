@@ -37,7 +37,7 @@ struct Formula {
   Op op = Op::symbol;
   int order = 0;
   bool keeps_sign = false;  // of a sum: a bracket of the model, not to be shown as its negative
-  std::string word;  // of a mark: "T", "tilde L", "Gamma", ...: see print/notation.hpp
+  std::string word;         // of a mark: "T", "tilde L", "Gamma", ...: see print/notation.hpp
   std::vector<Formula> args;
   std::vector<Formula> lower, upper;
 };

@@ -112,7 +112,8 @@ Monomial opened(const Monomial& monomial) {
   for (const Factor& factor : monomial) {
     if (!is_bracket(*factor.atom)) continue;
     const Monomial first = display_order(factor.atom->args[0]).front().first;
-    for (Rational n = factor.exponent; cln::plusp(n); n = n - 1) result = multiply(result, first).terms().begin()->first;
+    for (Rational n = factor.exponent; cln::plusp(n); n = n - 1)
+      result = multiply(result, first).terms().begin()->first;
   }
   return result;
 }

@@ -24,6 +24,8 @@ bool is_motion(const Atom& atom) {
          (atom.symbol.kind == SymbolKind::coordinate || atom.symbol.kind == SymbolKind::function);
 }
 
+bool is_sine_or_cosine(const Atom& atom) { return atom.op == Op::sin || atom.op == Op::cos; }
+
 bool has_factor(const Monomial& monomial, bool (*is_wanted)(const Atom&)) {
   bool found = false;
   for (const Factor& factor : monomial)
@@ -44,18 +46,29 @@ bool has_constant_term(const Sum& base) {
 }
 
 /// Whether a base reads better with the other sign: r - l0 and x2 - x1 - l0 for l0 - r and x1 - x2 + l0, x2 - x1 for
-/// x1 - x2.
+/// x1 - x2, y - h cos(b) for h cos(b) - y.
 bool reads_better_negated(const Sum& base) {
   bool has_moving_minus = false, adds_constant = false, subtracts_constant = false;
-  for (const auto& [monomial, coefficient] : base.terms()) {
+  std::optional<bool> last_is_subtracted, last_plain_is_subtracted;
+  for (const auto& [monomial, coefficient] : display_order(base)) {
     const bool minus = cln::minusp(coefficient);
-    if (!is_constant_term(monomial))
-      has_moving_minus = has_moving_minus || minus;
-    else
+    if (is_constant_term(monomial)) {
       (minus ? subtracts_constant : adds_constant) = true;
+      continue;
+    }
+    has_moving_minus = has_moving_minus || minus;
+    last_is_subtracted = minus;
+    if (!has_factor(monomial, is_sine_or_cosine)) last_plain_is_subtracted = minus;
   }
   if (adds_constant || subtracts_constant) return adds_constant && !subtracts_constant && has_moving_minus;
-  return has_moving_minus && cln::minusp(display_order(base).back().second);
+  return last_plain_is_subtracted ? *last_plain_is_subtracted : last_is_subtracted.value_or(false);
+}
+
+/// The common factor that is taken out of a base: s - 1/2 stays, as the model has it.
+Content factor_of_base(const Sum& base) {
+  Content common = content(base);
+  if (!is_integer(common.number)) common.number = 1;
+  return common;
 }
 
 class Collector {
@@ -65,6 +78,24 @@ class Collector {
 
   std::vector<PowerOfSum> collect(Ref potential) {
     terms(potential, 1, [&](Ref term, const ex& sign) { product(term, sign); });
+    return std::move(found_);
+  }
+
+  /// Differences such as x - l0 that a force law multiplies.
+  std::vector<PowerOfSum> collect_differences(const std::vector<std::vector<Ref>>& forces) {
+    const auto add_factor = [&](Ref term) {
+      const std::optional<Ref> factor = only_sum(term, nullptr);
+      if (factor && is_sum(*factor)) add_difference(*factor);
+      return factor;
+    };
+    for (const std::vector<Ref>& components : forces) {
+      for (const Ref component : components) {
+        terms(component, 1, [&](Ref term, const ex&) {
+          const std::optional<Ref> factor = add_factor(term);
+          if (factor && is_sum(*factor)) terms(*factor, 1, [&](Ref inner, const ex&) { add_factor(inner); });
+        });
+      }
+    }
     return std::move(found_);
   }
 
@@ -91,7 +122,7 @@ class Collector {
   bool is_sum(Ref r) const { return dag_[r].op == Op::add || dag_[r].op == Op::sub; }
 
   /// The factor of a product that is a sum or a power of one, if there is just one; the others go into `rest`.
-  std::optional<Ref> only_sum(Ref r, ex& rest) {
+  std::optional<Ref> only_sum(Ref r, ex* rest) {
     std::optional<Ref> result;
     std::vector<Ref> open{r};
     for (std::size_t count = 0; !open.empty(); ++count) {
@@ -104,25 +135,25 @@ class Collector {
         open.push_back(n.args[1]);
       } else if (n.op == Op::div) {
         open.push_back(n.args[0]);
-        rest = rest / bridge_.from_dag(n.args[1]);
+        if (rest != nullptr) *rest = *rest / bridge_.from_dag(n.args[1]);
       } else if (is_sum(factor) || (n.op == Op::power && is_sum(n.args[0]))) {
         if (result) return std::nullopt;
         result = factor;
-      } else {
-        rest = rest * bridge_.from_dag(factor);
+      } else if (rest != nullptr) {
+        *rest = *rest * bridge_.from_dag(factor);
       }
     }
     return result;
   }
 
   void product(Ref r, ex coefficient) {
-    const std::optional<Ref> factor = only_sum(r, coefficient);
+    const std::optional<Ref> factor = only_sum(r, &coefficient);
     if (!factor) return;
     if (dag_[*factor].op == Op::power) return add(*factor, coefficient, found_);
     // k ((x - a)^2 + y^2)/2: only if no squares of its terms merge, as those of sines and cosines do.
     std::vector<PowerOfSum> inside;
     terms(*factor, coefficient, [&](Ref term, ex c) {
-      const std::optional<Ref> inner = only_sum(term, c);
+      const std::optional<Ref> inner = only_sum(term, &c);
       if (inner && dag_[*inner].op == Op::power) add(*inner, c, inside);
     });
     if (inside.empty()) return;
@@ -138,13 +169,32 @@ class Collector {
     PowerOfSum result{imposed(factor), imposed(bridge_.from_dag(dag_[power_node].args[0])), dag_[power_node].payload};
     if (found_.size() + found.size() >= most_powers || result.exponent > largest_exponent) return;
     if (result.coefficient.size() != 1 || result.base.size() < 2 || result.base.size() > longest_base) return;
-    const Content common = content(result.base);
+    const Content common = factor_of_base(result.base);
     result.base = divide(result.base, common);
     const bool minus = reads_better_negated(result.base);
     if (minus) result.base = -result.base;
     const Sum outside(common.monomial, minus ? -common.number : common.number);
     result.coefficient = result.coefficient * power(outside, Rational(result.exponent));
     if (result.coefficient.size() == 1) found.push_back(std::move(result));
+  }
+
+  void add_difference(Ref sum) {
+    std::size_t size = 0;
+    terms(sum, 1, [&](Ref, const ex&) { ++size; });
+    if (size > longest_base || found_.size() >= most_powers) return;
+    Sum base = imposed(bridge_.from_dag(sum));
+    if (base.size() < 2 || base.size() > longest_base) return;
+    base = divide(base, factor_of_base(base));
+    if (reads_better_negated(base)) base = -base;
+    bool has_place = false, subtracts_constant = false;
+    for (const auto& [monomial, coefficient] : base.terms()) {
+      if (has_factor(monomial, is_motion) || (is_constant_term(monomial) && cln::plusp(coefficient))) return;
+      subtracts_constant = subtracts_constant || is_constant_term(monomial);
+      has_place = has_place || (!is_constant_term(monomial) && !has_factor(monomial, is_sine_or_cosine));
+    }
+    const bool is_known =
+        std::any_of(found_.begin(), found_.end(), [&](const PowerOfSum& other) { return other.base == base; });
+    if (has_place && subtracts_constant && !is_known) found_.push_back({Sum(), std::move(base), 1});
   }
 
   const symbolic::Dag& dag_;
@@ -181,16 +231,31 @@ Sum take_multiples(Sum& left, const Sum& expanded) {
     const Sum factor = number / pivot_number * multiply(monomial, reciprocal);
     if (factor.size() != 1) continue;
     const Sum all = factor * expanded;
-    const bool divides = all.size() == expanded.size() &&
-                         std::all_of(all.terms().begin(), all.terms().end(), [&](const auto& term) {
-                           const auto found = left.terms().find(term.first);
-                           return found != left.terms().end() && found->second == term.second;
-                         });
+    const bool divides =
+        all.size() == expanded.size() && std::all_of(all.terms().begin(), all.terms().end(), [&](const auto& term) {
+          const auto found = left.terms().find(term.first);
+          return found != left.terms().end() && found->second == term.second;
+        });
     if (!divides) continue;
     left -= all;
     result += factor;
   }
   return result;
+}
+
+/// Whether terms of both depend on the coordinates alike, so that they read as one: (k1 + k2) x1.
+bool shares_coordinates(const Sum& a, const Sum& b) {
+  const auto moving = [](const Monomial& monomial) {
+    Monomial result;
+    for (const Factor& factor : monomial) {
+      if (!is_constant_term({factor})) result.push_back(factor);
+    }
+    return result;
+  };
+  return std::any_of(a.terms().begin(), a.terms().end(), [&](const auto& x) {
+    return std::any_of(b.terms().begin(), b.terms().end(),
+                       [&](const auto& y) { return compare(moving(x.first), moving(y.first)) == 0; });
+  });
 }
 
 /// The coefficient's own sum as a second bracket: k (x - a) (s - l0)/s in place of two terms. Parameters stay outside.
@@ -201,7 +266,12 @@ Sum with_common_factors(const Sum& coefficient) {
   bool moves = false;
   for (const auto& [monomial, number] : rest.terms()) moves = moves || !is_constant_term(monomial);
   if (!moves) return coefficient;
-  const bool minus = has_negative_leading_term(rest);
+  // x - a, not a - x; differences without a constant take the sign of their factor.
+  const bool all_alike = std::all_of(rest.terms().begin(), rest.terms().end(), [&](const auto& term) {
+    return cln::minusp(term.second) == cln::minusp(rest.terms().begin()->second);
+  });
+  const bool minus =
+      all_alike ? has_negative_leading_term(rest) : has_constant_term(rest) && reads_better_negated(rest);
   return with_bracket(Sum(common.monomial, minus ? -common.number : common.number), minus ? -rest : rest, 1);
 }
 
@@ -211,7 +281,10 @@ bool is_bracket(const Atom& atom) { return atom.op == Op::pow && atom.args[1] ==
 
 std::vector<PowerOfSum> powers_of_sums(const mechanics::Mechanics& m, GinacBridge& bridge,
                                        const std::map<Symbol, Sum>& values) {
-  return Collector(m, bridge, values).collect(m.potential);
+  std::vector<PowerOfSum> result = Collector(m, bridge, values).collect(m.potential);
+  for (PowerOfSum& difference : Collector(m, bridge, values).collect_differences(m.force_components))
+    result.push_back(std::move(difference));
+  return result;
 }
 
 std::vector<PowerOfSum> powers_of_sums(const mechanics::Mechanics& m) {
@@ -224,7 +297,7 @@ std::vector<PowerOfSum> powers_of_sums(const mechanics::Mechanics& m) {
   }
 }
 
-Sum with_powers(const Sum& potential, const std::vector<PowerOfSum>& powers) {
+Sum with_powers(const Sum& potential, const std::vector<PowerOfSum>& powers) try {
   if (powers.empty() || potential.size() > longest_sum) return potential;
   const auto expanded = [](const PowerOfSum& p) {
     return simplify(p.coefficient * power(p.base, Rational(p.exponent)));
@@ -245,19 +318,32 @@ Sum with_powers(const Sum& potential, const std::vector<PowerOfSum>& powers) {
     kept += with_bracket(p.coefficient, p.base, p.exponent);
   }
   return left + kept;
+} catch (const work::BudgetExceeded&) {
+  return potential;
 }
 
-Sum with_brackets(const Sum& sum, const std::vector<PowerOfSum>& powers) {
+Sum with_brackets(const Sum& sum, const std::vector<PowerOfSum>& powers) try {
   if (powers.empty() || sum.size() < 2 || sum.size() > longest_sum) return sum;
   Sum left = sum, kept;
+  const auto take = [&](const PowerOfSum& p, long exponent) {
+    const Sum before = left;
+    const Sum taken = take_multiples(left, simplify(power(p.base, Rational(exponent))));
+    if (taken.is_zero()) return;
+    if (exponent == 1 && !has_constant_term(p.base) && shares_coordinates(left, before - left))
+      left = before;
+    else
+      kept += with_bracket(with_common_factors(taken), p.base, exponent);
+  };
   for (const PowerOfSum& p : powers) {
-    for (long exponent = p.exponent; exponent >= 1 && left.size() > 1; --exponent) {
-      if (exponent == 1 && !has_constant_term(p.base)) continue;
-      const Sum taken = take_multiples(left, simplify(power(p.base, Rational(exponent))));
-      if (!taken.is_zero()) kept += with_bracket(with_common_factors(taken), p.base, exponent);
-    }
+    for (long exponent = p.exponent; exponent > 1; --exponent) take(p, exponent);
+    if (has_constant_term(p.base)) take(p, 1);
+  }
+  for (const PowerOfSum& p : powers) {
+    if (!has_constant_term(p.base)) take(p, 1);
   }
   return left + kept;
+} catch (const work::BudgetExceeded&) {
+  return sum;
 }
 
 }  // namespace eomgen::reading

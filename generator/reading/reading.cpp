@@ -118,8 +118,8 @@ void write_constrained_roots(const Mechanics& m, DisplayForm& form) {
 void add_powers(const Mechanics& m, GinacBridge& bridge, DisplayForm& form) {
   if (form.is_unexpanded) return;
   within_budget([&] {
-    form.powers = powers_of_sums(m, bridge, form.approach == system::Approach::two ? imposed_values(m, bridge)
-                                                                                  : std::map<Symbol, Sum>{});
+    form.powers = powers_of_sums(
+        m, bridge, form.approach == system::Approach::two ? imposed_values(m, bridge) : std::map<Symbol, Sum>{});
   });
 }
 

@@ -118,7 +118,7 @@ TEST_CASE("a rod about its end: energies of translation and rotation are one ter
                              "kinetic = \"m*phi_dot^2/2\"\npotential = \"k*(phi - 48.85*pi/180)^2/2\"\n",
                              "spring.toml"),
       system::Approach::two, {"equations"});
-  CHECK(spring.of("explicit")[0].text == "m phi_ddot + k phi - 48.85[deg] k = 0");
+  CHECK(spring.of("explicit")[0].text == "m phi_ddot + k (phi - 48.85[deg]) = 0");
   CHECK(rod("pi/1024").of("equations")[0].text == "d/dt(1/3 m L^2 theta_dot) = L sin(pi/1024) sin(theta)");
 }
 

@@ -74,8 +74,8 @@ std::vector<Textbook> systems() {
        "m = 1\nk = 1\nl0 = 1\ng = 9.81\n",
        coordinates({"r", "theta"}) + particle("P", "m", "\"r*sin(theta)\", \"-r*cos(theta)\", 0") + weight +
            potential("k*(r - l0)^2/2"),
-       {"T~ = 1/2 m (r_dot^2 + r^2 theta_dot^2)"},
-       {"m r_ddot - m r theta_dot^2 + k r - m g cos(theta) - k l0 = 0",
+       {"T~ = 1/2 m (r_dot^2 + r^2 theta_dot^2)", "U~ = 1/2 k (r - l0)^2 - m g r cos(theta)"},
+       {"m r_ddot - m r theta_dot^2 + k (r - l0) - m g cos(theta) = 0",
         "m r^2 theta_ddot + 2 m r r_dot theta_dot + m g r sin(theta) = 0"}},
       {"bead on a rotating hoop",
        "m = 1\nR = 1\nw = 1\ng = 9.81\n",
@@ -109,7 +109,7 @@ std::vector<Textbook> systems() {
        "m = 1\nk = 1\nK = 1\n",
        coordinates({"x1", "x2"}) + particle("A", "m", "\"x1\", 0, 0") + particle("B", "m", "\"x2\", 1, 0") +
            potential("k*x1^2/2 + K*(x2 - x1)^2/2 + k*x2^2/2"),
-       {"T~ = 1/2 m (x1_dot^2 + x2_dot^2)"},
+       {"T~ = 1/2 m (x1_dot^2 + x2_dot^2)", "U~ = 1/2 k x1^2 + 1/2 K (x2 - x1)^2 + 1/2 k x2^2"},
        {"m x1_ddot + (k + K) x1 - K x2 = 0", "m x2_ddot - K x1 + (k + K) x2 = 0"}},
       {"physical pendulum",
        "m = 1\na = 1\nJ = 1\ng = 9.81\n",
@@ -165,6 +165,71 @@ std::vector<Textbook> systems() {
   };
 }
 
+/// Springs with a natural length, alone, between bodies, in space and beside others.
+std::vector<Textbook> springs() {
+  return {
+      {"two masses on a line",
+       "m1 = 1\nm2 = 1\nk1 = 1\nk2 = 1\nl1 = 1\nl2 = 1\n",
+       coordinates({"x1", "x2"}) + particle("A", "m1", "\"x1\", 0, 0") + particle("B", "m2", "\"x2\", 0, 0") +
+           potential("k1*(x1 - l1)^2/2 + k2*(x2 - x1 - l2)^2/2"),
+       {"U~ = 1/2 k1 (x1 - l1)^2 + 1/2 k2 (x2 - x1 - l2)^2"},
+       {"m1 x1_ddot + k1 (x1 - l1) - k2 (x2 - x1 - l2) = 0", "m2 x2_ddot + k2 (x2 - x1 - l2) = 0"}},
+      {"two equal springs, whose lengths cancel between them",
+       "m = 1\nk = 1\na = 1\n",
+       coordinates({"x1", "x2"}) + particle("A", "m", "\"x1\", 0, 0") + particle("B", "m", "\"x2\", 0, 0") +
+           potential("k*(x1 - a)^2/2 + k*(x2 - x1 - a)^2/2"),
+       {"U~ = 1/2 k (x1 - a)^2 + 1/2 k (x2 - x1 - a)^2"},
+       {"m x1_ddot + 2 k x1 - k x2 = 0", "m x2_ddot + k (x2 - x1 - a) = 0"}},
+      {"two masses and a spring without length",
+       "m = 1\nM = 1\nk = 1\n",
+       coordinates({"x1", "x2"}) + particle("A", "m", "\"x1\", 0, 0") + particle("B", "M", "\"x2\", 0, 0") +
+           potential("k*(x2 - x1)^2/2"),
+       {"U~ = 1/2 k (x2 - x1)^2"},
+       {"m x1_ddot - k (x2 - x1) = 0", "M x2_ddot + k (x2 - x1) = 0"}},
+      {"hardening spring",
+       "m = 1\nk = 1\nc = 1\nl0 = 1\n",
+       coordinates({"r"}) + particle("P", "m", "\"r\", 0, 0") + potential("k*(r - l0)^2/2 + c*(r - l0)^4/4"),
+       {"U~ = 1/4 c (r - l0)^4 + 1/2 k (r - l0)^2"},
+       {"m r_ddot + c (r - l0)^3 + k (r - l0) = 0"}},
+      {"torsion springs of two links",
+       "I = 1\nJ = 1\nk = 1\nK = 1\ntheta0 = 1\n",
+       coordinates({"theta1", "theta2"}) + "[energy]\nkinetic = \"I*theta1_dot^2/2 + J*theta2_dot^2/2\"\n"
+                                           "potential = \"k*(theta1 - theta0)^2/2 + K*(theta2 - theta1)^2/2\"\n",
+       {"U~ = 1/2 k (theta1 - theta0)^2 + 1/2 K (theta2 - theta1)^2"},
+       {"I theta1_ddot + k (theta1 - theta0) - K (theta2 - theta1) = 0", "J theta2_ddot + K (theta2 - theta1) = 0"}},
+      {"mass on a turntable",
+       "m = 1\nw = 1\nk = 1\nl0 = 1\n",
+       coordinates({"r"}) + particle("P", "m", "\"r*cos(w*t)\", \"r*sin(w*t)\", 0") + potential("k*(r - l0)^2/2"),
+       {"U~ = 1/2 k (r - l0)^2"},
+       {"m r_ddot - m w^2 r + k (r - l0) = 0"}},
+      {"cart on a spring with a pendulum",
+       "M = 1\nm = 1\nk = 1\nl = 1\nx0 = 1\ng = 9.81\n",
+       coordinates({"x", "theta"}) + particle("C", "M", "\"x\", 0, 0") +
+           particle("P", "m", "\"x + l*sin(theta)\", \"-l*cos(theta)\", 0") + weight + potential("k*(x - x0)^2/2"),
+       {"U~ = 1/2 k (x - x0)^2 - m l g cos(theta)"},
+       {"(M + m) x_ddot + m l cos(theta) theta_ddot - m l sin(theta) theta_dot^2 + k (x - x0) = 0",
+        "m l cos(theta) x_ddot + m l^2 theta_ddot + m l g sin(theta) = 0"}},
+      {"parallel springs",
+       "m = 1\nk1 = 1\nk2 = 1\na = 1\n",
+       coordinates({"x"}) + particle("P", "m", "\"x\", 0, 0") + potential("k1*(x - a)^2/2 + k2*(a - x)^2/2"),
+       {"U~ = 1/2 (k1 + k2) (x - a)^2"},
+       {"m x_ddot + (k1 + k2) (x - a) = 0"}},
+      {"spring in space, by two points",
+       "m = 1\nk = 1\nl0 = 1\na = 1\n",
+       "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = [\"x\", \"y\"] }\n"
+       "[[point]]\nname = \"O\"\nposition = \"a*E1\"\n"
+       "[[force]]\nspring = { stiffness = \"k\", length = \"l0\", between = [\"P\", \"O\"] }\n",
+       {"U~ = 1/2 k (s - l0)^2"},
+       {"m x_ddot + k (s - l0) (x - a)/s = 0", "m y_ddot + k y (s - l0)/s = 0"}},
+      {"spring as a force law",
+       "m = 1\nk = 1\nc = 1\nl0 = 1\n",
+       coordinates({"x"}) + particle("P", "m", "\"x\", 0, 0") +
+           "[[force]]\non = \"P\"\nforce = \"-(k*(x - l0) + c*x_dot)*E1\"\n",
+       {"U~ = 0"},
+       {"m x_ddot = -c x_dot - k (x - l0)"}},
+  };
+}
+
 model::Model read(const std::string& parameters, const std::string& body) {
   return model::read_model_text("format = 1\n[parameters]\n" + parameters + body, "book.toml");
 }
@@ -187,12 +252,8 @@ bool contains(const std::vector<std::string>& list, const std::string& line) {
   return std::find(list.begin(), list.end(), line) != list.end();
 }
 
-}  // namespace
-
-TEST_CASE("textbooks: twenty systems have the energies and equations that books print") {
-  const std::vector<Textbook> all = systems();
-  CHECK(all.size() == 20);
-  for (const Textbook& book : all) {
+void compare(const std::vector<Textbook>& systems) {
+  for (const Textbook& book : systems) {
     CAPTURE(book.name);
     const mechanics::Mechanics m = mechanics::build_mechanics(read(book.parameters, book.body));
     const auto items =
@@ -205,6 +266,15 @@ TEST_CASE("textbooks: twenty systems have the energies and equations that books 
     CHECK(texts(items, "explicit") == book.equations);
   }
 }
+
+}  // namespace
+
+TEST_CASE("textbooks: twenty systems have the energies and equations that books print") {
+  CHECK(systems().size() == 20);
+  compare(systems());
+}
+
+TEST_CASE("textbooks: springs keep the bracket of their extension in energies and equations") { compare(springs()); }
 
 TEST_CASE("textbooks: Routh's function and the reduced equation of the symmetric top are fractions with factors") {
   const mechanics::Mechanics m = mechanics::build_mechanics(
@@ -235,9 +305,30 @@ TEST_CASE("textbooks: the length of a spring between two pendulums has a letter"
   for (const char* key : {"energies", "equations", "explicit"}) {
     for (const std::string& line : texts(items, key)) CHECK(line.find("sqrt") == std::string::npos);
   }
+  CHECK(texts(items, "energies").back() == "U~ = 1/2 k (s - d)^2 - m L g cos(theta1) - m L g cos(theta2)");
+  CHECK(texts(items, "explicit")[0] ==
+        "m L^2 theta1_ddot + m L g sin(theta1) + L k (L sin(theta1 - theta2) - d cos(theta1)) (s - d)/s = 0");
   const std::vector<std::string> parts = texts(items, "parts");
   REQUIRE(parts.size() == 1);
   CHECK(parts[0] == "s = sqrt(2 L d sin(theta2) - 2 L d sin(theta1) - 2 L^2 cos(theta1 - theta2) + 2 L^2 + d^2)");
+}
+
+TEST_CASE("textbooks: solved equations use the letter of a spring's length, and its bracket") {
+  const mechanics::Mechanics m = mechanics::build_mechanics(
+      read("m = 1\nk = 1\nl0 = 1\na = 1\n",
+           "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = [\"x\", \"y\"] }\n"
+           "[[point]]\nname = \"O\"\nposition = \"a*E1\"\n"
+           "[[force]]\nspring = { stiffness = \"k\", length = \"l0\", between = [\"P\", \"O\"] }\n"));
+  reading::DisplayForms forms(m);
+  const reading::SolvedForm solved = forms.solved(reading::FrictionMode::given);
+  const auto items = print::render_solved(m, solved);
+  CHECK(texts(items, "solved") ==
+        std::vector<std::string>{"x_ddot = -k (s - l0) (x - a)/(m s)", "y_ddot = -k y (s - l0)/(m s)"});
+  CHECK(texts(items, "parts") == std::vector<std::string>{"s = sqrt(x^2 - 2 a x + y^2 + a^2)"});
+
+  print::LengthLetters letters;  // a letter that was defined above is not defined again
+  print::render(m, forms(system::Approach::two), {"equations"}, nullptr, &letters);
+  CHECK(texts(print::render_solved(m, solved, &letters), "parts").empty());
 }
 
 TEST_CASE("textbooks: a rolling disk by its shape has no quotient of |sin| and no term that vanishes") {
