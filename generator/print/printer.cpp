@@ -63,7 +63,7 @@ class FormulaPrinter {
       case FormulaKind::negative: return {style_.leading_minus() + at_least(f.args[0], Piece::product), Piece::sum};
       case FormulaKind::product: return product(f);
       case FormulaKind::fraction: return style_.fraction((*this)(f.args[0]), (*this)(f.args[1]));
-      case FormulaKind::sum: return {joined(signed_terms(f)), Piece::sum};
+      case FormulaKind::sum: return f.keeps_sign ? angle(f) : Piece{joined(signed_terms(f)), Piece::sum};
       case FormulaKind::rate: return style_.time_derivative((*this)(f.args[0]));
       case FormulaKind::partial: return style_.partial((*this)(f.args[0]), (*this)(f.args[1]));
       case FormulaKind::dot: return style_.dotted((*this)(f.args[0]), f.order);
@@ -132,7 +132,7 @@ class FormulaPrinter {
     if (call.op == Op::sin || call.op == Op::cos || call.op == Op::tan) return {angle(call.args[0])};
     return pieces(call.args);
   }
-  /// An angle, or a sum of some.
+  /// An angle, or a sum of some, such as the bracket of a torsion spring.
   Piece angle(const Formula& f) const {
     if (const auto degrees = as_degrees(f)) return style_.degrees(*degrees);
     if (f.kind != FormulaKind::sum && f.kind != FormulaKind::negative) return (*this)(f);
