@@ -216,11 +216,15 @@ Factored factor_out(const Sum& sum) {
 
 Formula bracket(const Sum& rest) { return led_by_plus(sum(polynomial_terms(rest)), true); }
 
+bool is_of_parameters(const Sum& sum) {
+  bool result = true;
+  for_each_atom(sum, [&](const Atom& atom) { result = result && is_fixed(atom); });
+  return result;
+}
+
 Formula factored_formula(const Factored& f, const Monomial& motion = {}) {
   if (f.rest.is_number()) return term_formula(f.number, f.monomial, {}, motion);
-  bool of_parameters = true;
-  for_each_atom(f.rest, [&](const Atom& atom) { of_parameters = of_parameters && is_fixed(atom); });
-  return term_formula(f.number, f.monomial, {bracket(f.rest)}, motion, of_parameters);
+  return term_formula(f.number, f.monomial, {bracket(f.rest)}, motion, is_of_parameters(f.rest));
 }
 
 // m1 l^2 + m2 l^2 + m2 k^2 -> (m1 + m2) l^2 + m2 k^2: extracts the factor that saves most, if any.
@@ -340,6 +344,17 @@ std::optional<Formula> number_in_front(const Sum& whole) {
   return term_formula(front.number, {}, {sum(polynomial_terms(divide(whole, front)))});
 }
 
+/// Whether a coefficient is M_ik: of an acceleration, or of a rate in a momentum. M_ik leads one equation and not the
+/// other; it is (m3 - m2) in both, not -(m2 - m3) in one.
+bool is_entry_of_mass_matrix(const Monomial& motion, const std::vector<ByMotion>& all) {
+  const auto is_single = [](const Monomial& m) { return m.size() == 1 && is_one(m[0].exponent); };
+  if (!is_single(motion)) return false;
+  if (motion[0].atom->symbol.order >= 2) return true;
+  return std::all_of(all.begin(), all.end(), [&](const ByMotion& group) {
+    return is_single(group.motion) && group.motion[0].atom->symbol.order == 1;
+  });
+}
+
 }  // namespace
 
 std::vector<Formula> arranged_terms(const Sum& whole, Layout layout) {
@@ -350,7 +365,11 @@ std::vector<Formula> arranged_terms(const Sum& whole, Layout layout) {
       if (group.motion.empty()) {
         for (Formula& term : polynomial_terms(group.coefficient)) result.push_back(std::move(term));
       } else {
-        result.push_back(factored_formula(factor_out(group.coefficient), group.motion));
+        const Factored f = factor_out(group.coefficient);
+        Formula term = factored_formula(f, group.motion);
+        const bool flips = term.kind == FormulaKind::negative && is_of_parameters(f.rest) &&
+                           is_entry_of_mass_matrix(group.motion, groups);
+        result.push_back(flips ? opposite(std::move(term.args[0])) : std::move(term));
       }
     }
     return result;

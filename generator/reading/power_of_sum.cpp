@@ -160,6 +160,7 @@ class Collector {
     std::size_t size = 0;
     terms(*factor, coefficient, [&](Ref term, const ex& c) { size += imposed(c * bridge_.from_dag(term)).size(); });
     if (imposed(coefficient * bridge_.from_dag(*factor)).size() != size) return;
+    inside.resize(std::min(inside.size(), most_powers - found_.size()));
     found_.insert(found_.end(), inside.begin(), inside.end());
   }
 
@@ -167,7 +168,7 @@ class Collector {
 
   void add(Ref power_node, const ex& factor, std::vector<PowerOfSum>& found) {
     PowerOfSum result{imposed(factor), imposed(bridge_.from_dag(dag_[power_node].args[0])), dag_[power_node].payload};
-    if (found_.size() + found.size() >= most_powers || result.exponent > largest_exponent) return;
+    if (found.size() >= most_powers || result.exponent > largest_exponent) return;
     if (result.coefficient.size() != 1 || result.base.size() < 2 || result.base.size() > longest_base) return;
     const Content common = factor_of_base(result.base);
     result.base = divide(result.base, common);

@@ -331,6 +331,20 @@ TEST_CASE("textbooks: solved equations use the letter of a spring's length, and 
   CHECK(texts(print::render_solved(m, solved, &letters), "parts").empty());
 }
 
+TEST_CASE("textbooks: an entry of the mass matrix is written alike in both of its equations") {
+  const mechanics::Mechanics m = mechanics::build_mechanics(
+      read("m1 = 1\nm2 = 1\nm3 = 1\ng = 9.81\n", coordinates({"x", "y"}) + particle("A", "m1", "0, \"-x\", 0") +
+                                                     particle("B", "m2", "1, \"x - y\", 0") +
+                                                     particle("C", "m3", "2, \"x + y\", 0") + weight));
+  const auto items = print::render(m, reading::derive_display_form(m, system::Approach::two), {"equations"});
+  CHECK(texts(items, "equations") ==
+        std::vector<std::string>{"d/dt((m1 + m2 + m3) x_dot + (m3 - m2) y_dot) - (m1 - m2 - m3) g = 0",
+                                 "d/dt((m3 - m2) x_dot + (m2 + m3) y_dot) - (m2 - m3) g = 0"});
+  CHECK(texts(items, "explicit") ==
+        std::vector<std::string>{"(m1 + m2 + m3) x_ddot + (m3 - m2) y_ddot - (m1 - m2 - m3) g = 0",
+                                 "(m3 - m2) x_ddot + (m2 + m3) y_ddot - (m2 - m3) g = 0"});
+}
+
 TEST_CASE("textbooks: a rolling disk by its shape has no quotient of |sin| and no term that vanishes") {
   const mechanics::Mechanics m =
       mechanics::build_mechanics(read("m = 1\nR = 1\ng = 9.81\n",
