@@ -225,7 +225,8 @@ class GradientRun {
     const double* const s = x.data() + n_;
     const double* const dt = x.data() + n_ * (1 + directions_.size());
     const bool moves = std::any_of(dt, dt + directions_.size(), [](double change) { return change != 0; });
-    const double rate = moves ? derivative_along(jumps_.scales(), t, own, 1, std::vector<double>(n_, 0.0), what, value)[0] : 0;
+    const double rate =
+        moves ? derivative_along(jumps_.scales(), t, own, 1, std::vector<double>(n_, 0.0), what, value)[0] : 0;
     std::vector<double> w(n_ + scene_.parameters.size() + driven_.size(), 0.0);
     for (std::size_t i = 0; i < n_; ++i) w[i] = product(by_state.data(), s + i * n_, n_) + rate * dt[i];
     for (std::size_t d = 0; d < count_; ++d) {

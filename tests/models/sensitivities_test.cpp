@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sensitivities of every scene of every shipped model against central differences of runs.
+#include "analysis/sensitivities.hpp"
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -8,7 +10,6 @@
 #include <optional>
 #include <set>
 
-#include "analysis/sensitivities.hpp"
 #include "error.hpp"
 #include "support/simulation.hpp"
 
@@ -18,11 +19,11 @@ using namespace eomgen::test;
 namespace {
 
 constexpr double rtol = 1e-13, atol = 1e-14;
-constexpr double agreement = 1e-5;  // relative; differences of two widths have to agree to a tenth of it
+constexpr double agreement = 1e-5;          // relative; differences of two widths have to agree to a tenth of it
 constexpr std::size_t most_directions = 4;  // per scene: parameters together, then starts
 constexpr std::size_t most_states = 20, most_states_of_starts = 8;
 constexpr std::size_t most_refusals = 3;
-constexpr std::size_t most_steps = 10000;   // each difference takes four runs
+constexpr std::size_t most_steps = 10000;  // each difference takes four runs
 
 /// Changes of values by a common factor h.
 struct Change {
@@ -54,9 +55,7 @@ class SceneTrial {
         states_(pipeline::state_names(*simulation_.derived)) {}
 
   bool is_done() const { return simulation_.result.outcome == eom::Outcome::done; }
-  bool is_small() const {
-    return states_.size() <= most_states;
-  }
+  bool is_small() const { return states_.size() <= most_states; }
 
   /// How many derivatives were compared. Derivatives that are refused by name, and differences that do not converge,
   /// are not.
@@ -77,7 +76,6 @@ class SceneTrial {
     }
     return compared;
   }
-
 
  private:
   static pipeline::SimulationRequest request_of(const std::string& model, const std::string& scene) {

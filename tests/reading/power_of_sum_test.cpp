@@ -6,9 +6,9 @@
 
 #include <algorithm>
 
+#include "reading/by_name.hpp"
 #include "reading/reading.hpp"
 #include "reading/trig.hpp"
-#include "reading/by_name.hpp"
 
 using namespace eomgen;
 using reading::Sum;
@@ -43,8 +43,7 @@ TEST_CASE("brackets: energies and equations of shipped models are those without 
         "R18_euler_121", "S1_two_masses", "S4_two_particles", "andrews_squeezer", "car_axis", "elastic_pendulum",
         "engine_mount", "lugre_friction", "pid_cart", "quarter_car", "six_bar_spatial", "woodpecker"}) {
     CAPTURE(std::string(name));
-    const mechanics::Mechanics m =
-        mechanics::build_mechanics(model::read_model(test::shipped(name)));
+    const mechanics::Mechanics m = mechanics::build_mechanics(model::read_model(test::shipped(name)));
     int with = 0;
     for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
       const reading::DisplayForm form = reading::derive_display_form(m, approach);
@@ -66,11 +65,11 @@ TEST_CASE("brackets: energies and equations of shipped models are those without 
 
 TEST_CASE("brackets: a difference of coordinates is kept only if no other term contains them") {
   const auto powers_of = [](const std::string& potential) {
-    const mechanics::Mechanics m = mechanics::build_mechanics(model::read_model_text(
-        "format = 1\n[parameters]\nk = 1\nK = 1\n[coordinates]\nx = {}\ny = {}\n[energy]\n"
-        "kinetic = \"x_dot^2 + y_dot^2\"\npotential = \"" +
-            potential + "\"\n",
-        "chain.toml"));
+    const mechanics::Mechanics m = mechanics::build_mechanics(
+        model::read_model_text("format = 1\n[parameters]\nk = 1\nK = 1\n[coordinates]\nx = {}\ny = {}\n[energy]\n"
+                               "kinetic = \"x_dot^2 + y_dot^2\"\npotential = \"" +
+                                   potential + "\"\n",
+                               "chain.toml"));
     const reading::DisplayForm form = reading::derive_display_form(m, system::Approach::two);
     std::vector<bool> result;
     for (const reading::Equation& e : form.equations)
