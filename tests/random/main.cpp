@@ -35,7 +35,7 @@ int try_seeds(const std::string& program, const std::string& folder, std::uint64
     limits.moved = seed % every == 0;
     const Trial trial = try_model(program, folder, m.text, limits);
     ++tried;
-    refused += trial.refusal.empty() ? 0 : 1;
+    refused += !trial.refusal.empty() && trial.findings.empty() ? 1 : 0;
     if (trial.refusal.empty()) {
       for (const std::string& feature : m.features) ++features[feature];
     }

@@ -25,6 +25,7 @@ const std::vector<std::string>& refusals() {
       "contradict",                    // contradictory constraints
       "follows from",                  // a redundant constraint
       "the start breaks constraint",   // an assembly that cannot be closed from its guess
+      "outside its range",             // an assembly that closes only beyond a chart
       "cannot be satisfied",
       "has no mass",  // a coordinate without inertia
       "no inertia",
@@ -118,6 +119,9 @@ class Attempt {
     const std::string said = message(result_);
     if (result_.status == 2 && (name != "derive") && among(said, refusals())) {
       trial_.refusal = said;
+      std::erase_if(trial_.findings, [](const Finding& finding) {  // `verify` of what has no start finds no states
+        return finding.what.find("no states were found") != std::string::npos;
+      });
     } else if (result_.status == 1 && is_sign_of_zero(said, text_)) {
       trial_.refusal = said;
     } else if (result_.status == 3 && name == "run" && reported_outcome()) {
