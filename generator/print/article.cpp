@@ -86,6 +86,7 @@ std::string latex_document(const Mechanics& m, const reading::DisplayForm& one, 
   const model::Model& model = *m.model;
   Article article{m, model, one, two, findings ? &*findings : nullptr, out, omitted};
   if (findings) article.left_out = findings->left_out;
+  article.powers = reading::powers_of_sums(m);
   article.find_lengths();
   for (const DocumentPart& part : document_parts) {
     if (article.omits(part.name)) article.left_out.push_back({std::string(part.what), "omitted on request"});

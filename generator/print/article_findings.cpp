@@ -74,7 +74,7 @@ std::string reason_of(const Article& a, const ConservedFinding& c) {
 std::optional<Formula> value_of(Article& a, const ConservedFinding& c) {
   try {
     const reading::Sum sum = c.named ? *c.named : reading::display_sum(a.m, c.expression);
-    Formula value = a.with_letters(reading::arrange(with_powers(sum, reading::powers_of_sums(a.m))));
+    Formula value = a.with_letters(reading::arrange(with_powers(sum, a.powers)));
     const std::string why = a.out.reason_too_long(value);
     if (why.empty()) return value;
     a.left_out.push_back({c.title, why});

@@ -20,8 +20,9 @@ struct Article {
   LatexWriter& out;
   const std::vector<std::string>& omitted;  // names of document_parts
   std::vector<work::LeftOut> left_out = {};
-  LengthLetters letters = {};           // of lengths in energies and equations
-  std::vector<Statement> lengths = {};  // their definitions
+  std::vector<reading::PowerOfSum> powers = {};  // of the potential, without constraints imposed
+  LengthLetters letters = {};                    // of lengths in energies and equations
+  std::vector<Statement> lengths = {};           // their definitions
 
   /// Whether the equations of approach II differ from those of approach I.
   bool approaches_differ() const;

@@ -236,8 +236,8 @@ class System {
         std::vector<Formula> index;
         if (model_.forces.size() > 1) index.push_back(reading::number(static_cast<long>(i + 1)));
         const Letters letters(model_, false);
-        shown.push_back(reading::relation({reading::mark(letters.U, std::move(index)),
-                                           reading::arrange(with_powers(*U, reading::powers_of_sums(m_)))}));
+        shown.push_back(reading::relation(
+            {reading::mark(letters.U, std::move(index)), reading::arrange(with_powers(*U, a_.powers))}));
       }
     } else {
       for (std::uint32_t q = 0; q < model_.coordinates.size(); ++q) {

@@ -31,9 +31,8 @@ bool agree(const Slopes& wider, const Slopes& narrower, const std::vector<double
 /// The components that move, and the time, by as much as they are.
 double widest_step(const DifferenceScales& scales, const std::vector<double>& x, double dt,
                    const std::vector<double>& dx) {
-  constexpr double moves = 1e-8;     // of the largest change: less is rounding
-  constexpr double no_scale = 1e-9;  // of the states of the run: a smaller state is near 0
-  constexpr double part = 1e-2;      // of the states of the run, where the state itself has no scale
+  constexpr double moves = 1e-8;  // of the largest change: less is rounding
+  constexpr double part = 1e-2;   // of the states of the run, where the state itself has no scale
   const double size = largest_magnitude(dx), by_time = scales.span / std::abs(dt);
   if (size == 0) return by_time;
   double widest = 0, typical = 0;
@@ -43,7 +42,7 @@ double widest_step(const DifferenceScales& scales, const std::vector<double>& x,
     typical = std::max(typical, std::max(std::abs(x[i]), scales.states[i]) / std::abs(dx[i]));
   }
   if (typical == 0) typical = std::max(1.0, largest_magnitude(scales.states)) / size;
-  if (widest <= no_scale * typical) widest = part * typical;
+  if (widest <= DifferenceScales::near_zero * typical) widest = part * typical;
   return dt == 0 ? widest : std::min(widest, by_time);
 }
 
@@ -58,6 +57,12 @@ double largest_magnitude(const std::vector<double>& values) {
 DifferenceScales::DifferenceScales(const Scene& scene, const RunResult& motion)
     : span(scene.t1 - scene.t0), states(motion.state) {
   for (double& state : states) state = std::abs(state);
+}
+
+double DifferenceScales::magnitude(const std::vector<double>& x) const {
+  const double typical = largest_magnitude(states), here = largest_magnitude(x);
+  if (here > near_zero * typical) return here;
+  return typical > 0 ? typical : 1;
 }
 
 std::vector<double> derivative_along(const DifferenceScales& scales, double t, const std::vector<double>& x, double dt,

@@ -18,13 +18,17 @@ double largest_magnitude(const std::vector<double>& values);
 using Described = std::function<std::string()>;
 using FunctionOfState = std::function<std::vector<double>(double t, std::vector<double> x)>;
 
-/// The scales of differences: the span of the run, and the magnitudes of its states. They count for a state near 0,
+/// The scales of differences: the span of the run, and the magnitudes of its states. These count for a state near 0,
 /// which has no scale of its own: a body at rest in the origin.
 struct DifferenceScales {
+  static constexpr double near_zero = 1e-9;  // of the states at the end of the run
+
   double span;
-  std::vector<double> states;
+  std::vector<double> states;  // magnitudes at the end of the run
 
   DifferenceScales(const Scene& scene, const RunResult& motion);
+  /// The magnitude of a state, or of those of the run if it is near 0.
+  double magnitude(const std::vector<double>& x) const;
 };
 
 /// d/de of values(t + e dt, x + e dx) at e = 0. Narrower differences have to agree with wider ones. Throws Error{stage

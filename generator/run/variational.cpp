@@ -12,7 +12,6 @@ namespace eomgen::run {
 namespace {
 
 constexpr double relative_difference = 1e-3;  // of the state
-constexpr double no_scale = 1e-9;             // of the states at the end: a smaller state is near 0
 
 /// Offsets in units of h, in the order of difference_offsets, and weights of the derivative to order 4, times h.
 constexpr std::array<std::pair<double, double>, 4> order_four{
@@ -104,9 +103,7 @@ class VariationalRun::Run {
       const std::vector<double> s(at.begin() + static_cast<std::ptrdiff_t>((d + 1) * n_),
                                   at.begin() + static_cast<std::ptrdiff_t>((d + 2) * n_));
       const double size = largest_magnitude(s);
-      const double typical = largest_magnitude(jumps_.scales().states), here = largest_magnitude(own);
-      const double unit = here > no_scale * typical ? here : typical > 0 ? typical : 1;
-      const double h = size > 0 ? relative_difference * unit / size : 0;
+      const double h = size > 0 ? relative_difference * jumps_.scales().magnitude(own) / size : 0;
       for (const auto& [offset, weight] : order_four) {
         if (size == 0) break;
         for (std::size_t i = 0; i < n_; ++i) state[i] = own[i] + offset * h * s[i];

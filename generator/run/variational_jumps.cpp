@@ -293,7 +293,8 @@ bool VariationalJumps::cross_surface(const eom::EventPoint& point) {
 bool VariationalJumps::change_contact(const eom::EventPoint& point) {
   const double t = point.t;
   // Variational equations are not projected. A slip of the wrong sign by rounding would end at once.
-  if (own_.context.rows.size() > 0 && own_.context.projection(t, point.x.data()) != 0) return true;
+  if (own_.context.rows.size() > 0 && own_.context.projection(t, point.x.data()) != 0)
+    refuse_derivative(fmt::format("the state at t = {} does not satisfy the constraints of its contacts", t));
   const std::vector<double> x(point.x.begin(), point.x.end()), own = state_of(x);
   std::vector<double> before(n_), behind(n_);
   if (!rhs(t, own.data(), before)) return true;  // the integration reports it

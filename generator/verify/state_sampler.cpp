@@ -16,15 +16,16 @@ namespace eomgen::verify {
 namespace {
 
 // Initial spread of random values around the defaults and initial values; it narrows after rejections.
-constexpr double parameter_spread = 0.25;  // relative
-constexpr double coordinate_spread = 0.5;  // of the scale of its unit
-constexpr double angle_spread = 1.2;       // rad
-constexpr double range_margin = 0.05;      // of a chart's range, at either end: charts are singular there
-constexpr double longest_span = 100;       // s; later times add no new tests
-constexpr const char* at_kink = "too near the kink";
+constexpr double parameter_spread = 0.25;    // relative
+constexpr double coordinate_spread = 0.5;    // of the scale of its unit
+constexpr double angle_spread = 1.2;         // rad
+constexpr double range_margin = 0.05;        // of a chart's range, at either end: charts are singular there
+constexpr double longest_span = 100;         // s; later times add no new tests
 constexpr double kink_margin = 1e-6;         // so that rounding to binary64 cannot change the branch
 constexpr std::size_t patience = 12;         // attempts to close the same contacts before one of them is left open
 constexpr std::size_t inside_patience = 48;  // the same if they close, but never within the ranges
+
+constexpr const char* at_kink = "too near the kink";
 
 bool is_angle(const model::Unit& unit) { return unit.text == "rad" || unit.text == "1"; }
 

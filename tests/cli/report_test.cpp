@@ -108,6 +108,9 @@ TEST_CASE(
   CHECK(moving["live"].is_null());
   CHECK(contains(moving["reason"].get<std::string>(), "59 contacts"));
   CHECK(moving["x"].is_null());
+
+  expect(0, folder, {"report", "box_stack", "-o", "page.html", "--t-end", "0.01"});
+  CHECK(folder.read("page.html").size() < 1000000);  // hundreds of formulas, each with a line where it is left out
 }
 
 TEST_CASE("report: a page integrates a model with kinks, with and without events") {

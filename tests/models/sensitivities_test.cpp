@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sensitivities of every scene of every shipped model against central differences of runs.
+// Sensitivities of the scenes of the shipped models against central differences of runs. Left out are scenes that do
+// not run to their end, large systems, and what `--sensitivity` refuses by name.
 #include "analysis/sensitivities.hpp"
 
 #include <doctest/doctest.h>
@@ -20,6 +21,7 @@ namespace {
 
 constexpr double rtol = 1e-13, atol = 1e-14;
 constexpr double agreement = 1e-5;          // relative; differences of two widths have to agree to a tenth of it
+constexpr double decisive = 1e-3;           // a comparison with larger errors counts for nothing
 constexpr std::size_t most_directions = 4;  // per scene: parameters together, then starts
 constexpr std::size_t most_states = 20, most_states_of_starts = 8;
 constexpr std::size_t most_refusals = 3;
@@ -50,7 +52,8 @@ std::vector<std::pair<std::string, std::string>> shipped_scenes() {
 class SceneTrial {
  public:
   SceneTrial(const std::string& model, const std::string& scene)
-      : request_(request_of(model, scene)),
+      : name_(model),
+        request_(request_of(model, scene)),
         simulation_(pipeline::simulate(request_)),
         states_(pipeline::state_names(*simulation_.derived)) {}
 
@@ -89,6 +92,10 @@ class SceneTrial {
     request.with = analysis::sensitivity_functions(*request.model);
     return request;
   }
+
+  /// Reported by another outcome: four bars pass the configuration in which their constraints are dependent, and the
+  /// steps of the stiff bristles are lost in rounding at this tolerance.
+  bool has_no_slopes() const { return name_ == "n_four_bar_2" || name_ == "lugre_friction"; }
 
   std::vector<Change> independent_parameters() const {
     const model::Model& m = *request_.model;
@@ -149,7 +156,11 @@ class SceneTrial {
     request_.estimate = true;
     const std::optional<run::Sensitivities> found = sensitivities(names);
     request_.estimate = false;
-    if (!found || found->outcome != eom::Outcome::done) return 0;
+    if (!found) return 0;
+    CAPTURE(names.front());
+    if (found->outcome == eom::Outcome::max_steps) return 0;
+    CHECK((found->outcome == eom::Outcome::done || has_no_slopes()));
+    if (found->outcome != eom::Outcome::done) return 0;
     std::vector<double> expected(states_.size()), error(states_.size());
     for (std::size_t k = 0; k < direction.size(); ++k) {
       for (std::size_t i = 0; i < states_.size(); ++i) {
@@ -169,19 +180,19 @@ class SceneTrial {
       for (std::size_t i = 0; i < states_.size(); ++i) {
         const double scale = std::max(std::abs((*narrow)[i]), 1e-3 * largest) + 1e-6;
         if (!open[i] || std::abs((*wide)[i] - (*narrow)[i]) > 0.1 * agreement * scale) continue;
-        CAPTURE(names.front());
         CAPTURE(states_[i]);
         CAPTURE(h);
         CAPTURE(expected[i]);
         CHECK(std::abs((*narrow)[i] - expected[i]) <= agreement * scale + error[i] + noise);
         open[i] = false;
-        ++compared;
+        if (error[i] + noise <= decisive * std::max(1.0, std::abs((*narrow)[i]))) ++compared;
       }
       if (std::none_of(open.begin(), open.end(), [](bool b) { return b; })) break;
     }
     return compared;
   }
 
+  std::string name_;
   pipeline::SimulationRequest request_;
   pipeline::Simulation simulation_;
   std::vector<std::string> states_;
@@ -191,7 +202,7 @@ class SceneTrial {
 }  // namespace
 
 TEST_CASE("sensitivities: those of the shipped scenes agree with central differences of runs") {
-  std::size_t scenes = 0, without_end = 0, without_slopes = 0, compared = 0;
+  std::size_t scenes = 0, without_end = 0, large = 0, without_slopes = 0, compared = 0;
   for (const auto& [model, scene] : shipped_scenes()) {
     CAPTURE(model);
     CAPTURE(scene);
@@ -203,8 +214,10 @@ TEST_CASE("sensitivities: those of the shipped scenes agree with central differe
       ++without_end;
       continue;
     }
-    if (!trial->is_done() || !trial->is_small()) {
+    if (!trial->is_done()) {
       ++without_end;
+    } else if (!trial->is_small()) {
+      ++large;
     } else if (const std::size_t n = trial->compare(); n > 0) {
       compared += n;
     } else {
@@ -214,6 +227,7 @@ TEST_CASE("sensitivities: those of the shipped scenes agree with central differe
   // Those that end by another outcome, or take too many steps; those that slide in two directions, or whose contacts
   // change in an order that depends on the values.
   CHECK(without_end <= scenes / 10);
+  CHECK(large <= scenes / 20);
   CHECK(without_slopes <= scenes / 6);
   CHECK(compared >= 11 * scenes);
 }

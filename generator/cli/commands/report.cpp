@@ -33,7 +33,7 @@ struct Options : SceneOptions {
 constexpr double most_rows = 400, least_rows = 120, most_values = 20000;   // in a motion
 constexpr std::size_t fewest_rows = 40;                                    // least number for an animation
 constexpr std::size_t longest_formula = 60000, longest_formulas = 350000;  // bytes of MathML
-constexpr std::size_t largest_page = 980000, largest_motion = 900000;      // bytes, without formulas
+constexpr std::size_t largest_page = 950000, largest_motion = 900000;      // bytes; names of what is left out follow
 
 /// Number of rows. The page interpolates with cubics, so models with many coordinates can have fewer rows.
 double rows_of_a_page(const model::Model& model) {
