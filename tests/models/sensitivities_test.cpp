@@ -63,19 +63,22 @@ class SceneTrial {
   /// How many derivatives were compared. Derivatives that are refused by name, and differences that do not converge,
   /// are not.
   std::size_t compare() {
-    std::size_t compared = 0;
-    Direction parameters;
-    for (const Change& change : independent_parameters()) {
-      if (refusals_ == most_refusals) return 0;  // by the motion, whatever the value
-      if (sensitivities({change.name})) parameters.push_back(change);
+    const Direction all = independent_parameters();
+    std::size_t compared = all.empty() ? 0 : compare(all);
+    if (refusals_ > 0) {  // of some of them, or of the motion
+      Direction parameters;
+      for (const Change& change : all) {
+        if (refusals_ > most_refusals) return 0;
+        if (sensitivities({change.name})) parameters.push_back(change);
+      }
+      if (!parameters.empty()) compared += compare(parameters);
     }
-    if (!parameters.empty()) compared += compare(parameters);
     std::size_t directions = 1;
     for (const Change& change : starts()) {
       if (directions == most_directions || states_.size() > most_states_of_starts) break;
-      if (!sensitivities({change.name})) continue;
-      ++directions;
-      compared += compare({change});
+      const std::size_t before = refusals_;
+      compared += compare(Direction{change});
+      if (refusals_ == before) ++directions;
     }
     return compared;
   }
