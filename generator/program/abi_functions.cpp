@@ -178,10 +178,24 @@ FunctionExpressions AbiFunctions::rhs() {
   return function;
 }
 
+const symbolic::VanishingNorms& AbiFunctions::norms() {
+  if (norms_) return *norms_;
+  std::vector<Ref> roots = qddot_;
+  for (const auto* const part : {&lambda_, &system_.f, &system_.A, &system_.gamma})
+    roots.insert(roots.end(), part->begin(), part->end());
+  if (system_.residual) roots.insert(roots.end(), system_.residual->applied.begin(), system_.residual->applied.end());
+  for (const system::FirstOrderState& state : system_.states) roots.push_back(state.rate);
+  norms_ = symbolic::vanishing_norms(*system_.dag, roots);
+  // A division in an output says nothing about the equations.
+  for (const system::Output& output : system_.outputs)
+    norms_->merge(symbolic::vanishing_norms(*system_.dag, {output.value}));
+  return *norms_;
+}
+
 // d(qddot)/ds by differentiating the equations of motion, not their solution. With qddot and lambda constant,
 //   M dqddot = df + dA^T lambda - dM qddot + A^T dlambda,   A dqddot = -(dgamma + dA qddot).
 std::vector<Ref> AbiFunctions::derivative_column(Symbol along) {
-  symbolic::Derivation d = symbolic::partial_derivative(*system_.dag, along);
+  symbolic::Derivation d = symbolic::partial_derivative(*system_.dag, along, norms());
   return differentiated(d, along);
 }
 

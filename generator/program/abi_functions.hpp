@@ -141,10 +141,12 @@ class AbiFunctions {
   std::size_t n_, m_;
   std::vector<Ref> qdot_, qddot_symbol_, lambda_symbol_;
   void solve_contacts(std::map<symbolic::Symbol, Ref>& solution);
-  const LinearSolver& solve();  // created on first use; a system that is solved already may never need it
+  const symbolic::VanishingNorms& norms();  // of the equations of motion, the rates of states and the outputs
+  const LinearSolver& solve();              // created on first use; a system that is solved already may never need it
 
   Ties ties_ = Ties::ascending;
   std::unique_ptr<LinearSolver> solve_;
+  std::optional<symbolic::VanishingNorms> norms_;  // found on first use
   std::vector<Ref> qddot_, lambda_;
   std::unique_ptr<symbolic::Substitution> solution_;
   FrictionSolution friction_;  // if there are contacts

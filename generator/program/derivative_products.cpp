@@ -32,7 +32,7 @@ FunctionExpressions AbiFunctions::jvp(Differentiate by) {
   const std::vector<Ref> direction = arguments(0, symbols.size());
   std::map<Symbol, Ref> seeds;
   for (std::size_t i = 0; i < symbols.size(); ++i) seeds[symbols[i]] = direction[i];
-  symbolic::Derivation d(*system_.dag, std::move(seeds));
+  symbolic::Derivation d(*system_.dag, std::move(seeds), norms());
   std::vector<Ref>& entries = function.results[0].entries;
   entries.assign(direction.begin() + static_cast<std::ptrdiff_t>(n_),
                  direction.begin() + static_cast<std::ptrdiff_t>(2 * n_));
@@ -86,14 +86,14 @@ std::vector<Ref> AbiFunctions::gradient(Differentiate by, const std::vector<Ref>
   if (by == Differentiate::solution || differentiates_solution()) {
     roots.insert(roots.end(), qddot_.begin(), qddot_.end());
     factors.insert(factors.end(), of_qddot, of_states);
-    return symbolic::gradient(dag, roots, factors, of);
+    return symbolic::gradient(dag, roots, factors, of, norms());
   }
   const auto [mu, nu] = solve()({of_qddot, of_states}, std::vector<Ref>(m_, dag.zero()));
   const std::vector<Ref> sums = equation_sums();
   roots.insert(roots.end(), sums.begin(), sums.end());
   factors.insert(factors.end(), mu.begin(), mu.end());
   factors.insert(factors.end(), nu.begin(), nu.end());
-  std::vector<Ref> result = symbolic::gradient(dag, roots, factors, of);
+  std::vector<Ref> result = symbolic::gradient(dag, roots, factors, of, norms());
   for (Ref& r : result) r = (*solution_)(r);
   return result;
 }
@@ -129,7 +129,7 @@ FunctionExpressions AbiFunctions::hvp(Differentiate by) {
   const std::vector<Ref> of = gradient(by, arguments(0, states), symbols), direction = arguments(states, states);
   std::map<Symbol, Ref> seeds;
   for (std::size_t i = 0; i < states; ++i) seeds[symbols[i]] = direction[i];
-  symbolic::Derivation d(*system_.dag, std::move(seeds));
+  symbolic::Derivation d(*system_.dag, std::move(seeds), norms());
   for (const Ref r : of) function.results[0].entries.push_back(d(r));
   add_solution(function);
   return function;

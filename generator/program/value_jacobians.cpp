@@ -85,7 +85,7 @@ std::vector<Ref> AbiFunctions::value_slopes_by_columns(const std::vector<Ref>& v
   }
   std::vector<Ref> slopes;
   for (const Symbol& symbol : symbols) {
-    symbolic::Derivation d = symbolic::partial_derivative(dag, symbol);
+    symbolic::Derivation d = symbolic::partial_derivative(dag, symbol, norms());
     if (!by_equations) {
       for (const Ref root : roots) slopes.push_back(d(root));
       continue;
@@ -95,7 +95,7 @@ std::vector<Ref> AbiFunctions::value_slopes_by_columns(const std::vector<Ref>& v
     std::map<Symbol, Ref> seeds{{symbol, dag.one()}};
     for (std::size_t i = 0; i < n_; ++i) seeds[{SymbolKind::coordinate, system_.free[i], 2}] = unknowns.first[i];
     for (std::size_t k = 0; k < m_; ++k) seeds[{SymbolKind::multiplier, system_.active[k], 0}] = unknowns.second[k];
-    symbolic::Derivation along(dag, std::move(seeds));
+    symbolic::Derivation along(dag, std::move(seeds), norms());
     for (const Ref root : roots) slopes.push_back((*solution_)(along(root)));
   }
   return slopes;
@@ -114,7 +114,7 @@ std::vector<Ref> AbiFunctions::value_slopes_by_rows(const std::vector<Ref>& valu
     if (solved && differentiates_solution()) {
       roots[0] = (*solution_)(roots[0]);
     } else if (solved) {
-      std::vector<Ref> slope = symbolic::gradient(dag, roots, weights, unknowns);
+      std::vector<Ref> slope = symbolic::gradient(dag, roots, weights, unknowns, norms());
       for (Ref& r : slope) r = (*solution_)(r);
       const auto of_lambda = slope.begin() + static_cast<std::ptrdiff_t>(n_);
       std::vector<Ref> against;
@@ -125,7 +125,7 @@ std::vector<Ref> AbiFunctions::value_slopes_by_rows(const std::vector<Ref>& valu
       weights.insert(weights.end(), mu.begin(), mu.end());
       weights.insert(weights.end(), nu.begin(), nu.end());
     }
-    const std::vector<Ref> gradient = symbolic::gradient(dag, roots, weights, symbols);
+    const std::vector<Ref> gradient = symbolic::gradient(dag, roots, weights, symbols, norms());
     for (std::size_t j = 0; j < symbols.size(); ++j)
       slopes[row + values.size() * j] = solved ? (*solution_)(gradient[j]) : gradient[j];
   }

@@ -11,8 +11,8 @@ namespace {
 
 class ReverseSweep {
  public:
-  ReverseSweep(Dag& dag, const std::vector<Ref>& roots, const std::vector<Symbol>& symbols)
-      : dag_(dag), order_(dag.reachable(roots)), adjoint_(dag.size()), depends_(dag.size(), false) {
+  ReverseSweep(Dag& dag, const std::vector<Ref>& roots, const std::vector<Symbol>& symbols, const VanishingNorms& norms)
+      : dag_(dag), norms_(norms), order_(dag.reachable(roots)), adjoint_(dag.size()), depends_(dag.size(), false) {
     for (const Ref r : order_) {
       const Node& node = dag_[r];
       depends_[r.id] =
@@ -102,6 +102,7 @@ class ReverseSweep {
     const auto first = [&](Ref value) { give(node.args[0], value); };
     const auto second = [&](Ref value) { give(node.args[1], value); };
     const auto depends = [&](std::size_t i) { return depends_[node.args[i].id]; };
+    if (norms_.contains(r)) return first((b * s(slope_of_norm(dag_, r))).ref);
     switch (node.op) {
       case Op::add: first(bar), second(bar); return;
       case Op::sub: first(bar), second((-b).ref); return;
@@ -151,6 +152,7 @@ class ReverseSweep {
   }
 
   Dag& dag_;
+  const VanishingNorms& norms_;
   std::vector<Ref> order_;                 // operands first
   std::vector<std::vector<Ref>> adjoint_;  // the terms of each
   std::vector<Node> branches_;             // of the term that is passed on, the outermost first
@@ -160,8 +162,8 @@ class ReverseSweep {
 }  // namespace
 
 std::vector<Ref> gradient(Dag& dag, const std::vector<Ref>& roots, const std::vector<Ref>& weights,
-                          const std::vector<Symbol>& symbols) {
-  ReverseSweep sweep(dag, roots, symbols);
+                          const std::vector<Symbol>& symbols, const VanishingNorms& norms) {
+  ReverseSweep sweep(dag, roots, symbols, norms);
   for (std::size_t i = 0; i < roots.size(); ++i) sweep.add(roots[i], weights.at(i));
   sweep.run();
   return sweep.of(symbols);

@@ -6,11 +6,13 @@
 #include <vector>
 
 #include "symbolic/dag.hpp"
+#include "symbolic/norm_slope.hpp"
 
 namespace eomgen::symbolic {
 
-/// d(sum_i weights_i roots_i)/d(symbol) for each of `symbols`. The weights are held. As many weights as roots.
+/// d(sum_i weights_i roots_i)/d(symbol) for each of `symbols`. The weights are held. As many weights as roots. The
+/// slopes of `norms` are 0 where they vanish.
 std::vector<Ref> gradient(Dag& dag, const std::vector<Ref>& roots, const std::vector<Ref>& weights,
-                          const std::vector<Symbol>& symbols);
+                          const std::vector<Symbol>& symbols, const VanishingNorms& norms = {});
 
 }  // namespace eomgen::symbolic

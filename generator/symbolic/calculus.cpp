@@ -78,6 +78,7 @@ Ref Derivation::of_node(Ref r) {
   const Scalar self = s(r), x = s(node.args[0]), y = s(node.args[1]), dx = s(d[0]), dy = s(d[1]);
   const Scalar one = s(dag_.one());
   const ScalarNumbers numbers{dag_};
+  if (norms_.contains(r)) return (s(slope_of_norm(dag_, r)) * dx).ref;
   switch (node.op) {
     case Op::add: return (dx + dy).ref;
     case Op::sub: return (dx - dy).ref;
@@ -107,7 +108,9 @@ Ref Derivation::of_node(Ref r) {
   }
 }
 
-Derivation partial_derivative(Dag& dag, Symbol symbol) { return Derivation(dag, {{symbol, dag.one()}}); }
+Derivation partial_derivative(Dag& dag, Symbol symbol, VanishingNorms norms) {
+  return Derivation(dag, {{symbol, dag.one()}}, std::move(norms));
+}
 
 namespace {
 

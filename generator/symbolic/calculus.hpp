@@ -7,24 +7,28 @@
 #include <vector>
 
 #include "symbolic/dag.hpp"
+#include "symbolic/norm_slope.hpp"
 
 namespace eomgen::symbolic {
 
-/// The derivative d/ds for given seeds: symbol -> d(symbol)/ds. Symbols without a seed are constant.
+/// The derivative d/ds for given seeds: symbol -> d(symbol)/ds. Symbols without a seed are constant. The slopes of
+/// `norms` are 0 where they vanish.
 class Derivation {
  public:
-  Derivation(Dag& dag, std::map<Symbol, Ref> seeds) : dag_(dag), seeds_(std::move(seeds)) {}
+  Derivation(Dag& dag, std::map<Symbol, Ref> seeds, VanishingNorms norms = {})
+      : dag_(dag), seeds_(std::move(seeds)), norms_(std::move(norms)) {}
   Ref operator()(Ref expression);
 
  private:
   Ref of_node(Ref r);
   Dag& dag_;
   std::map<Symbol, Ref> seeds_;
+  VanishingNorms norms_;
   std::unordered_map<std::uint32_t, Ref> memo_;
 };
 
 /// Partial derivative with respect to one symbol.
-Derivation partial_derivative(Dag& dag, Symbol symbol);
+Derivation partial_derivative(Dag& dag, Symbol symbol, VanishingNorms norms = {});
 
 /// Total time derivative: t -> 1, q -> qdot -> qddot, f -> f' for functions of time; integrals and states of first
 /// order -> their rates. Third derivatives of coordinates do not exist. `freeze_acceleration` seeds qdot with 0 instead

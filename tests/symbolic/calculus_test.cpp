@@ -97,6 +97,40 @@ TEST_CASE("calculus: gradients have a value where the branch that is not taken h
   CHECK(binary(got[1], 2, 0.3) == doctest::Approx(3 / 2.0 + 5 * std::cos(0.15) / 2).epsilon(1e-14));
 }
 
+TEST_CASE("calculus: Jacobians take 0 as the slope of a norm at 0, and no other slope changes") {
+  Dag dag;
+  const Symbol y_symbol{SymbolKind::coordinate, 1, 0};
+  const Ref x = dag.symbol(x_symbol), y = dag.symbol(y_symbol);
+  const Ref square = dag.add(dag.power(x, 2), dag.mul(dag.integer(3), dag.power(dag.mul(x, y), 2)));
+  const auto at = [&](Ref r, double at_x) {
+    const std::function<double(const Symbol&)> value = [&](const Symbol& s) { return s == x_symbol ? at_x : 0.5; };
+    return evaluate(dag, {r}, value)[0];
+  };
+  for (const Ref norm : {dag.call(Op::sqrt, square), dag.pow(square, dag.constant(Rational(3) / 4))}) {
+    const Ref drag = dag.mul(norm, x);
+    const VanishingNorms norms = vanishing_norms(dag, {drag});
+    CHECK(norms == VanishingNorms{norm});
+    const Ref plain = partial_derivative(dag, x_symbol)(drag);
+    const Ref forward = partial_derivative(dag, x_symbol, norms)(drag);
+    const Ref reverse = gradient(dag, {drag}, {dag.one()}, {x_symbol}, norms)[0];
+    CHECK(!std::isfinite(at(plain, 0)));
+    CHECK(at(forward, 0) == 0);
+    CHECK(at(reverse, 0) == 0);
+    CHECK(at(forward, 0.3) == doctest::Approx(at(plain, 0.3)).epsilon(1e-14));
+    CHECK(at(reverse, 0.3) == doctest::Approx(at(plain, 0.3)).epsilon(1e-14));
+    const Ref twice = partial_derivative(dag, x_symbol, norms)(forward);
+    CHECK(at(twice, 0) == 0);
+    // What divides by the norm has no value where it is 0.
+    for (const Ref divided : {dag.div(x, norm), dag.div(x, dag.mul(y, dag.power(norm, 3)))})
+      CHECK(vanishing_norms(dag, {drag, divided}).empty());
+  }
+  const Ref softened = dag.add(square, dag.one());
+  for (const Ref other :
+       {dag.call(Op::sqrt, x), dag.call(Op::sqrt, dag.call(Op::abs, x)), dag.call(Op::sqrt, softened),
+        dag.pow(square, dag.constant(Rational(1) / 4)), dag.call(Op::sqrt, dag.sub(dag.power(x, 2), y))})
+    CHECK(vanishing_norms(dag, {other}).empty());
+}
+
 TEST_CASE("calculus: the total time derivative follows coordinates, functions of time and time itself") {
   Dag dag;
   const Ref q = dag.symbol({SymbolKind::coordinate, 0, 0}), v = dag.symbol({SymbolKind::coordinate, 0, 1});
