@@ -170,6 +170,14 @@ EmissionRequest complete(const EmissionRequest& asked, const Archive& archive, c
   return request;
 }
 
+/// The functions of a model hold between kinks in time, and nothing in them applies the impulses there.
+void warn_of_impulses(const std::string& target) {
+  work::warn(fmt::format(
+      "warning: a prescribed motion has a kink in time, where velocities may jump, and the functions of the target {} "
+      "have no impulses\n  remedy: use eomgen run, or --target cpp --with run, or make the motion smooth\n",
+      target));
+}
+
 }  // namespace
 
 void require_target(const std::string& target, const std::vector<std::string>& beside) {
@@ -208,6 +216,7 @@ Emission emit_model(std::shared_ptr<const model::Model> model, const EmissionReq
   context.jumps_in_time = run::may_jump_in_time(derived->candidates.front());
   add_start(request, *derived, context);
   if (has(request.with, "run")) context.run = run_text(*derived, scene, result.program);
+  if (context.jumps_in_time && !context.run && archive == nullptr) warn_of_impulses(request.target);
   if (request.single) emit::convert_to_single(result.program, context);
   result.single_error = context.single_error;
   result.files = archive != nullptr ? archive->make({*derived, result.program, context, request.format_version})

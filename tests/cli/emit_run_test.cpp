@@ -123,6 +123,15 @@ TEST_CASE("targets that integrate refuse kinks in time at which velocities jump"
   write("0.3*abs(t-1)");
   for (const char* target : {"modelica", "cuda"})
     CHECK(contains(expect(2, folder, {"emit", "kink.toml", "--target", target, "-o", "."}).err, "kink in time"));
+  // Functions without an integrator are emitted, and the missing impulses are reported.
+  const auto warned = [&](const Words& further) {
+    Words words{"emit", "kink.toml", "-o", "."};
+    words.insert(words.end(), further.begin(), further.end());
+    return contains(expect(0, folder, words).err, "have no impulses");
+  };
+  for (const char* target : {"c", "cpp", "rust", "julia", "octave", "casadi", "javascript", "batch"})
+    CHECK(warned({"--target", target}));
+  CHECK(!warned({"--target", "cpp", "--with", "run"}));
   const bool has_python = run_child({{"sh", "-c", "python3 -c 'import ctypes'"}, folder.path()}).status == 0;
   if (!has_python) MESSAGE("skipped in part: there is no python3");
   const auto simulated = [&] {
@@ -134,5 +143,6 @@ TEST_CASE("targets that integrate refuse kinks in time at which velocities jump"
   write("0.3*sin(t)");
   folder.write("kink.toml", folder.read("kink.toml") + "[[force]]\non = \"P\"\nforce = \"abs(t - 1)*E1\"\n");
   expect(0, folder, {"emit", "kink.toml", "--target", "modelica", "-o", "."});
+  CHECK(!warned({"--target", "c"}));
   if (has_python) CHECK(contains(simulated().out, "done"));
 }
