@@ -93,6 +93,8 @@ std::vector<std::string> banner_lines(const program::Program& program, const Emi
       fmt::format("equations   approach {}, formulation {}", system::name(program.approach), program.formulation));
   lines.push_back("verified    " + (context.verdict.empty() ? "no" : context.verdict));
   for (const std::string& set : context.singular) lines.push_back("singular    " + set);
+  if (context.jumps_in_time && !context.run)
+    lines.push_back("impulses    none here: velocities may jump at kinks in time of a prescribed motion");
   for (const program::Function& function : program.functions) {
     lines.push_back(fmt::format("{:11} {}", function.name == "rhs_prepared" ? "rhs after" : function.name,
                                 operations_text(function.operations)));

@@ -48,18 +48,15 @@ bool is_zero_everywhere(const Dag& dag, Ref expression) {
 /// The reason why an expression of parameters alone has no value that a double holds; empty if it has one, or if other
 /// symbols occur.
 std::string why_no_number(const Dag& dag, Ref expression, const ParameterValue& parameter) {
-  constexpr int digits = 40;
   static const cln::cl_R pole = cln::expt(cln::cl_RA(10), 30);  // a pole after rounding
   static const cln::cl_R largest = cln::rational(cln::cl_float(std::numeric_limits<double>::max()));
   const std::vector<symbolic::Symbol> symbols = dag.symbols({expression});
   const auto moves = [](const symbolic::Symbol& symbol) { return symbol.kind != symbolic::SymbolKind::parameter; };
   if (std::any_of(symbols.begin(), symbols.end(), moves)) return "";
   const bool has_parameters = !symbols.empty();
-  const std::function<cln::cl_R(const symbolic::Symbol&)> value_of = [&](const symbolic::Symbol& symbol) {
-    return symbolic::evaluate(dag, {parameter(symbol.index)}, value_of, digits)[0];
-  };
+  const auto value_of = [&](const symbolic::Symbol& symbol) { return parameter(symbol.index); };
   try {
-    const cln::cl_R value = symbolic::evaluate(dag, {expression}, value_of, digits)[0];
+    const cln::cl_R value = symbolic::evaluate(dag, {expression}, value_of, parameter_digits)[0];
     if (cln::abs(value) > largest && (has_parameters || dag[expression].op != Op::tan)) return out_of_range;
     return dag[expression].op == Op::tan && cln::abs(value) > pole && !has_parameters ? "a tangent at its pole" : "";
   } catch (const std::domain_error& outside) {

@@ -17,8 +17,10 @@ void require_nonzero_divisor(const Mechanics& mechanics, Ref divisor, const mode
 /// The same for the length of a vector that is normalised.
 void require_nonzero_length(const Mechanics& mechanics, Ref length, const model::Span& place);
 
-/// The lowered formula of a parameter of the model, by its index.
-using ParameterValue = std::function<Ref(std::uint32_t)>;
+/// The value of a parameter of the model, by its index. Throws std::domain_error if it has none.
+using ParameterValue = std::function<cln::cl_R(std::uint32_t)>;
+/// Decimal digits of these values.
+inline constexpr int parameter_digits = 40;
 
 /// The same if `expression` is a function or a power without a value, a root of 0 that has no derivative, or above all
 /// doubles for the parameters of the model.

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "mechanics/domain.hpp"
+#include "symbolic/evaluate.hpp"
 #include "symbolic/polynomial.hpp"
 
 namespace eomgen::mechanics {
@@ -194,7 +195,7 @@ Lowering::Value Lowering::lower_arithmetic(const model::Node& node) {
     return of(Vec3{combine(a[0], b[0]), combine(a[1], b[1]), combine(a[2], b[2])});
   };
   const auto valued = [&](Ref r) {
-    require_value(m_, r, node.span, [this](std::uint32_t i) { return scalar(m_.model->parameters[i].value); });
+    require_value(m_, r, node.span, [this](std::uint32_t i) { return parameter_value(i); });
     return of(r);
   };
   switch (node.op) {
@@ -359,6 +360,13 @@ Ref Lowering::norm(const Vec3& a) {
     if (dag_[root].op != sym::Op::sqrt) return root;
   }
   return dag_.call(sym::Op::sqrt, square);
+}
+
+cln::cl_R Lowering::parameter_value(std::uint32_t parameter) {
+  if (const auto known = parameter_values_.find(parameter); known != parameter_values_.end()) return known->second;
+  const auto other = [this](const sym::Symbol& symbol) { return parameter_value(symbol.index); };
+  const Ref formula = scalar(m_.model->parameters[parameter].value);
+  return parameter_values_[parameter] = sym::evaluate(dag_, {formula}, other, parameter_digits)[0];
 }
 
 Vec3 Lowering::gradient(const Vec3& a, std::uint32_t coordinate) {

@@ -2,6 +2,8 @@
 // Lowers the model's expression trees to Dag nodes, including kinematics (velocities, bases).
 #pragma once
 
+#include <cln/real.h>
+
 #include <unordered_map>
 
 #include "mechanics/mechanics.hpp"
@@ -64,6 +66,8 @@ class Lowering {
   Value lower_arithmetic(const model::Node& node);
   Value lower_vector(const model::Node& node);
   Value lower_derivative(const model::Node& node);
+  /// In mechanics::parameter_digits digits. Parameters may share others, so that each is evaluated once.
+  cln::cl_R parameter_value(std::uint32_t parameter);
   Value basis(const model::Node& node);
   model::NodeId chart_vector(std::uint32_t place, std::uint32_t coordinate);
   Vec3 contravariant(std::uint32_t place, std::uint32_t coordinate, const model::Span& span);
@@ -75,6 +79,7 @@ class Lowering {
   symbolic::Derivation ddt_;
   symbolic::Derivation explicit_rate_;
   std::unordered_map<model::NodeId, Value> memo_;
+  std::unordered_map<std::uint32_t, cln::cl_R> parameter_values_;
   Ref extension_, slip_;
   int depth_ = 0;
 };

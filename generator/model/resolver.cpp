@@ -138,15 +138,14 @@ TypedNode Resolver::check_context(TypedNode typed, Span span, const Context& con
     if (!same(*context.dimension, *typed.dimension)) {
       report_wrong_dimension(typed, span, fmt::format("{} must be in {}", context.what, text_of(*context.dimension)),
                              typed.has_uncertain_dimension);
-    } else if (const auto parameter = lone_parameter(model_, typed.node)) {
+    } else if (const auto parameter = parameter_along_axis(model_, typed.node)) {
       parameters_that_fit_.insert(*parameter);
     }
   }
   return typed;
 }
 
-const Symbol* Resolver::declared_parameter(const TypedNode& value) {
-  const auto parameter = lone_parameter(model_, value.node);
+const Symbol* Resolver::declared_parameter(std::optional<std::uint32_t> parameter) {
   if (!parameter) return nullptr;
   for (const Symbol* symbol : scope_.all(SymbolKind::parameter)) {
     const bool same = symbol->state == Symbol::State::resolved && symbol->index == *parameter;
@@ -157,7 +156,7 @@ const Symbol* Resolver::declared_parameter(const TypedNode& value) {
 
 void Resolver::refuse_value(const TypedNode& value, Span span, const std::string& what, const std::string& problem,
                             std::string remedy) {
-  const Symbol* parameter = declared_parameter(value);
+  const Symbol* parameter = declared_parameter(lone_parameter(model_, value.node));
   if (parameter == nullptr) source_.fail(span, fmt::format("{} {}", what, problem), std::move(remedy));
   source_.fail(declared_value(*parameter).span,
                fmt::format("{}, the parameter '{}', {}", what, parameter->name, problem), std::move(remedy));
@@ -170,7 +169,8 @@ void Resolver::require_positive_mass(const TypedNode& mass, Span span, const std
 
 void Resolver::report_wrong_dimension(const TypedNode& value, Span span, const std::string& requirement, bool loose) {
   const std::string unit = text_of(*value.dimension);
-  const Symbol* parameter = units_stated_ && !loose ? declared_parameter(value) : nullptr;
+  const Symbol* parameter =
+      units_stated_ && !loose ? declared_parameter(parameter_along_axis(model_, value.node)) : nullptr;
   if (parameter == nullptr)
     return report_mismatch(span, fmt::format("{}, and this is in {}", requirement, unit), loose);
   // A unit that suits another use is right, and the name at this one is wrong.

@@ -117,7 +117,7 @@ class Resolver {
 
  private:
   /// The declaration of the parameter that an expression consists of; nullptr if it is none.
-  const Symbol* declared_parameter(const TypedNode& value);
+  const Symbol* declared_parameter(std::optional<std::uint32_t> parameter);
   /// Warns of parameters above one turn without a unit in the argument of a trigonometric function.
   void warn_of_degrees(NodeId argument, std::string_view function);
   TypedNode syntax(const Syntax& syntax, const Context& context);

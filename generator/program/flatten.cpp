@@ -28,7 +28,8 @@ class Flattening {
     const std::vector<NodeId> order = from_.topological_order();
     uses_ = from_.use_counts(order);
     to_.reserve(order.size());
-    if (expand_) find_barriers();
+    to_.coordinates = from_.coordinates;
+    if (expand_) find_barriers(), find_relative(order);
     for (const NodeId id : order) {
       value_[id] = value(id);
       if (expand_ && barrier_[id]) {
@@ -111,7 +112,7 @@ class Flattening {
     for (const Term& term : node.terms) {
       Term moved = translate(term);
       if (symbolic::is_zero(moved.coefficient)) continue;
-      if (expand_ && multiply_out(moved, terms)) continue;
+      if (expand_ && multiply_out(moved, relative_[id], terms)) continue;
       if (node.terms.size() > 1 && may_splice(term, moved)) {
         for (Term inner : to_[moved.factors[0].node].terms) {
           if (cln::minusp(moved.coefficient)) inner.coefficient = -inner.coefficient;
@@ -138,15 +139,50 @@ class Flattening {
     }
   }
 
+  /// Nodes whose relative error matters: divisors, arguments of functions, and what these consist of.
+  void find_relative(const std::vector<NodeId>& order) {
+    relative_.assign(from_.size(), false);
+    for (auto id = order.rbegin(); id != order.rend(); ++id) {
+      const Node& node = from_[*id];
+      for (const Term& term : node.terms) {
+        for (const Factor& f : term.factors)
+          relative_[f.node] = relative_[f.node] || relative_[*id] || node.kind == Node::Kind::call || f.exponent < 0;
+      }
+    }
+  }
+
+  /// A difference such as x - L: affine in a coordinate, or in a rate if `rates`. It may be small beside its summands,
+  /// and its square loses all digits there if it is multiplied out: x^2 - 2 x L + L^2.
+  bool may_cancel(const Node& sum, bool rates) const {
+    const auto is_leaf_of = [this](const Factor& f, bool state) {
+      const Node& node = to_[f.node];
+      return node.kind == Node::Kind::leaf && (node.leaf.slot == Slot::state) == state;
+    };
+    const auto is_rate = [this](const Factor& f) {
+      const std::uint32_t place = to_[f.node].leaf.index;
+      return place >= from_.coordinates && place < 2 * from_.coordinates;
+    };
+    return std::any_of(sum.terms.begin(), sum.terms.end(), [&](const Term& term) {
+      std::size_t states = 0, others = 0;
+      for (const Factor& f : term.factors) {
+        if (f.exponent == 1 && is_leaf_of(f, true) && (rates || !is_rate(f)))
+          ++states;
+        else if (!is_leaf_of(f, false))
+          ++others;
+      }
+      return states == 1 && others == 0;
+    });
+  }
+
   /// Adds the summands of a product of sums to `terms` if they are few.
-  bool multiply_out(const Term& term, std::vector<Term>& terms) const {
+  bool multiply_out(const Term& term, bool relative, std::vector<Term>& terms) const {
     constexpr std::size_t most = 36;
     std::vector<Term> products{{term.coefficient, {}}};
     bool opened = false;
     for (const Factor& f : term.factors) {
       const Node& node = to_[f.node];
       const bool open = node.kind == Node::Kind::sum && node.terms.size() > 1 && !closed_.contains(f.node);
-      if (!open || f.exponent < 1 || f.exponent > 2) {
+      if (!open || f.exponent < 1 || f.exponent > 2 || (f.exponent == 2 && may_cancel(node, relative))) {
         for (Term& product : products) product.factors = multiply(product.factors, {f});
         continue;
       }
@@ -185,8 +221,8 @@ class Flattening {
   const PolynomialGraph& from_;
   bool inline_products_, expand_;
   PolynomialGraph to_;
-  std::vector<bool> barrier_;  // nodes of from_
-  std::set<NodeId> closed_;    // nodes of to_
+  std::vector<bool> barrier_, relative_;  // nodes of from_
+  std::set<NodeId> closed_;               // nodes of to_
   std::vector<Term> value_;
   std::vector<std::uint32_t> uses_;
 };

@@ -18,6 +18,7 @@ class Conversion {
       : dag_(dag), free_(free), states_(states) {}
 
   PolynomialGraph run(const FunctionExpressions& wanted) {
+    graph_.coordinates = static_cast<std::uint32_t>(free_.size());
     std::vector<Ref> roots;
     for (const auto& result : wanted.results) roots.insert(roots.end(), result.entries.begin(), result.entries.end());
     for (const Pivot& pivot : wanted.pivots) roots.insert(roots.end(), {pivot.pivot, pivot.scale});

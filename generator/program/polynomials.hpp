@@ -123,6 +123,7 @@ class PolynomialGraph {
   std::vector<Term> results;
   std::vector<PivotPair> pivots;
   std::vector<Label> labels;
+  std::uint32_t coordinates = 0;  // x[0 .. coordinates) are coordinates, as many rates follow
 
  private:
   NodeId add(std::uint64_t hash, Node node);

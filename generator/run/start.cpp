@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <set>
 
@@ -56,6 +57,8 @@ class StartSolver {
   }
 
  private:
+  enum class Steps : std::uint8_t { full, damped };  // of Newton's method
+
   // A unilateral contact is open if all coordinates in its gap are given, and the gap is positive (order 0) or
   // increasing (order 1).
   void leave(std::uint8_t order) {
@@ -346,13 +349,18 @@ class StartSolver {
     }
   }
 
-  // Starts from the guess (or 0), then from points near it: at 0 a gradient may vanish (x^2 + y^2 - L^2).
+  // Starts from the guess (or 0), then from points near it: at 0 a gradient may vanish (x^2 + y^2 - L^2). Where all of
+  // them fail, shorter steps may not: those of atan(50 z) - x leave the neighbourhood of z = 0.
   void newton(std::uint8_t order, const std::vector<std::size_t>& free) {
+    if (!newton(order, free, Steps::full) && order == 0) newton(order, free, Steps::damped);
+  }
+  bool newton(std::uint8_t order, const std::vector<std::size_t>& free, Steps steps) {
     const std::vector<double> start = order == 0 ? p_.q : p_.qdot;
     for (const double offset : {0.0, 1.0, -1.0, 0.1, 10.0}) {
       (order == 0 ? p_.q : p_.qdot) = start;
       move_beside(order, free, offset);
-      if (!iterate(order, free, offset == 0)) continue;  // away from the guess undetermined unknowns would not be 0
+      if (!iterate(order, free, offset == 0, steps))
+        continue;  // away from the guess undetermined unknowns would not be 0
       // Accept only unknowns that the constraints determine; any other value would be arbitrary.
       for (const std::size_t i : free) {
         const StartProblem::Key key{s_.free[i], order};
@@ -360,13 +368,38 @@ class StartSolver {
         p_.solved_notes.push_back(
             fmt::format("{} = {} follows from the constraints", rows_.label(key), rows_.value(key)));
       }
-      return;
+      return true;
     }
     (order == 0 ? p_.q : p_.qdot) = start;
+    return false;
+  }
+
+  /// Subtracts the move; a smaller part of it if a function of the constraints, such as log, has no value there.
+  /// Damped: or if the residuals, relative to their slopes, do not decrease enough.
+  void take_step(std::uint8_t order, const std::vector<std::size_t>& moving, Steps steps, VectorXd& move) {
+    constexpr int most_halvings = 20;
+    constexpr double sufficient = 0.25;  // of the decrease of the linear model
+    const std::vector<double> before = order == 0 ? p_.q : p_.qdot;
+    VectorXd residual;
+    MatrixXd A;
+    rows_.linearise(order, residual, A);
+    const VectorXd scale = A.rowwise().norm().cwiseMax(std::numeric_limits<double>::min());
+    const double size = residual.cwiseQuotient(scale).norm();
+    double part = 1;
+    for (int halving = 0; halving <= most_halvings; ++halving, part /= 2) {
+      for (std::size_t i = 0; i < moving.size(); ++i) {
+        const std::uint32_t c = s_.free[moving[i]];
+        rows_.value({c, order}) = before[c] - part * move(static_cast<Eigen::Index>(i));
+      }
+      rows_.linearise(order, residual, A);
+      if (!residual.allFinite() || !A.allFinite()) continue;
+      if (steps == Steps::full || residual.cwiseQuotient(scale).norm() <= (1 - sufficient * part) * size) break;
+    }
+    move *= part;
   }
 
   /// `partly`: if the constraints do not determine all unknowns, solves for those that they determine.
-  bool iterate(std::uint8_t order, const std::vector<std::size_t>& free, bool partly) {
+  bool iterate(std::uint8_t order, const std::vector<std::size_t>& free, bool partly, Steps steps = Steps::full) {
     VectorXd residual;
     MatrixXd A;
     for (int step = 0; step < newton_steps; ++step) {
@@ -387,13 +420,9 @@ class StartSolver {
         if (!keep_determined(columns, rank, start_rank_tolerance, move))
           return rows_.largest_residual(order) <= rounding;
       }
-      double size = 0, scale = 0;
-      for (std::size_t i = 0; i < moving.size(); ++i) {
-        double& x = rows_.value({s_.free[moving[i]], order});
-        x -= move(static_cast<Eigen::Index>(i));
-        size = std::max(size, std::abs(move(static_cast<Eigen::Index>(i))));
-        scale = std::max(scale, std::abs(x));
-      }
+      take_step(order, moving, steps, move);
+      double size = move.cwiseAbs().maxCoeff(), scale = 0;
+      for (const std::size_t i : moving) scale = std::max(scale, std::abs(rows_.value({s_.free[i], order})));
       if (size <= start_rounding * scale || rows_.largest_residual(order) <= start_rounding)
         return rows_.largest_residual(order) <= rounding;
     }

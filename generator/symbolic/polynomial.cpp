@@ -81,6 +81,12 @@ Expander::Maybe Expander::expand_node(Ref r) {
     case Op::power: {
       if (!arg(0)) return std::nullopt;
       if (node.payload > highest_expanded_power && arg(0)->size() > 1) return with_simpler_arguments(r);
+      if (powers_ == PowersOfDifferences::kept && is_difference(*arg(0))) {
+        const Ref base = rebuild(reduce(*arg(0)));
+        const bool negative = dag_[base].op == Op::neg;
+        return Polynomial{{Monomial{{negative ? dag_[base].args[0] : base, node.payload}},
+                           Rational(negative && node.payload % 2 != 0 ? -1 : 1)}};
+      }
       Maybe power = *arg(0);
       if (power->size() == 1) {
         Monomial m = power->begin()->first;
@@ -92,6 +98,29 @@ Expander::Maybe Expander::expand_node(Ref r) {
     }
     default: return with_simpler_arguments(r);
   }
+}
+
+/// Whether the sum is affine in a coordinate, a rate or a state.
+bool Expander::is_difference(const Polynomial& p) const {
+  const auto moves = [this](Ref atom) {
+    const Node& node = dag_[atom];
+    if (node.op != Op::symbol) return node.op != Op::pi;
+    const SymbolKind kind = dag_.symbol_of(atom).kind;
+    return kind != SymbolKind::parameter;
+  };
+  const auto is_affine = [&](const auto& term) {
+    std::size_t moving = 0;
+    bool states_only = true;
+    for (const Power& factor : term.first) {
+      if (!moves(factor.atom)) continue;
+      ++moving;
+      const bool symbol = dag_[factor.atom].op == Op::symbol && factor.exponent == 1;
+      const SymbolKind kind = symbol ? dag_.symbol_of(factor.atom).kind : SymbolKind::time;
+      states_only = states_only && (kind == SymbolKind::coordinate || kind == SymbolKind::state);
+    }
+    return moving == 1 && states_only;
+  };
+  return p.size() > 1 && std::any_of(p.begin(), p.end(), is_affine);
 }
 
 Expander::Maybe Expander::product(const Polynomial& a, const Polynomial& b) const {

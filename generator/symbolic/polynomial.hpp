@@ -34,11 +34,16 @@ struct ProductBudget {
   }
 };
 
+/// What becomes of (x - L)^2, the power of a distance or of a difference of rates. It may be small beside x^2, and
+/// x^2 - 2 L x + L^2 has no correct digit there: programs keep the power, proofs multiply it out.
+enum class PowersOfDifferences : std::uint8_t { expanded, kept };
+
 class Expander {
  public:
   /// No result has more than `term_budget` terms. Expansion stops once `effort` is exhausted.
-  explicit Expander(Dag& dag, std::size_t term_budget = 400, ProductBudget* effort = nullptr)
-      : dag_(dag), budget_(term_budget), effort_(effort) {}
+  explicit Expander(Dag& dag, std::size_t term_budget = 400, ProductBudget* effort = nullptr,
+                    PowersOfDifferences powers = PowersOfDifferences::expanded)
+      : dag_(dag), budget_(term_budget), effort_(effort), powers_(powers) {}
 
   /// The expanded and reduced form; nothing if it exceeds the budget.
   std::optional<Ref> operator()(Ref expression);
@@ -52,6 +57,7 @@ class Expander {
   Maybe product(const Polynomial& a, const Polynomial& b) const;
   Maybe quotient(const Polynomial& a, const Polynomial& b);
   Polynomial atom(Ref r) const;
+  bool is_difference(const Polynomial& p) const;
   Polynomial with_simpler_arguments(Ref r);
   Polynomial reduce(Polynomial p) const;
   std::optional<Polynomial> replace_square(const Polynomial& p, Ref square, Ref other) const;
@@ -62,6 +68,7 @@ class Expander {
   Dag& dag_;
   std::size_t budget_;
   ProductBudget* effort_;
+  PowersOfDifferences powers_;
   std::unordered_map<std::uint32_t, Maybe> memo_;
   std::unordered_map<std::uint32_t, bool> may_overflow_;
 };

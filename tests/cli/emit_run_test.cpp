@@ -131,6 +131,7 @@ TEST_CASE("targets that integrate refuse kinks in time at which velocities jump"
   };
   for (const char* target : {"c", "cpp", "rust", "julia", "octave", "casadi", "javascript", "batch"})
     CHECK(warned({"--target", target}));
+  CHECK(contains(folder.read("kink.jl"), "impulses    none here"));
   CHECK(!warned({"--target", "cpp", "--with", "run"}));
   const bool has_python = run_child({{"sh", "-c", "python3 -c 'import ctypes'"}, folder.path()}).status == 0;
   if (!has_python) MESSAGE("skipped in part: there is no python3");

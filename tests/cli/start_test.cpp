@@ -131,6 +131,27 @@ TEST_CASE("a start without any consistent configuration is refused") {
   CHECK(contains(result.err, "the start breaks constraint"));
 }
 
+TEST_CASE("a start is found within the domain of its functions, and never far away where they are flat") {
+  const Folder folder;
+  const auto run = [&](const std::string& constraint, const std::string& more) {
+    folder.write("surface.toml",
+                 "format = 1\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { cartesian = [\"x\", \"y\", \"z\"] "
+                 "}\n[[force]]\ngravity = \"-9.81*E3\"\n[[constraint]]\nname = \"surface\"\nholonomic = \"" +
+                     constraint + "\"\n[scene.default]\nt = [0, 0.1]\ninitial = { x = -0.1, x_dot = 0.1 }\n" + more);
+    return expect(0, folder, {"run", "surface.toml", "--out", "a.csv"}).out;
+  };
+  const auto z = [&] { return read_table(folder.read("a.csv")).at(0, "z"); };
+  // tan(-0.1)/50 alone; atan is almost 1.57 for every large z, which is no solution.
+  for (const std::string& guess : {std::string(), std::string("guess = { z = 0.5 }\n")}) {
+    const std::string out = run("atan(50*z) - x", guess);
+    CHECK(z() == doctest::Approx(std::tan(-0.1) / 50).epsilon(1e-12));
+    CHECK(!contains(out, "satisfies them too"));
+  }
+  // Full steps of Newton's method leave the domain of log.
+  run("log(z + 1) - 60*x", "");
+  CHECK(z() == doctest::Approx(std::expm1(-6)).epsilon(1e-12));
+}
+
 TEST_CASE("initial(q) is the initial value in each scene, also for a dependent coordinate") {
   const Folder folder;
   // A spring that is relaxed at the start, and a slider coupled to the crank by x - initial(x) = R (theta -

@@ -75,6 +75,15 @@ limits = { x = ["-a", "2*a"], y = [0, 1] }
   CHECK(named("stop_y_upper").unilateral);
 }
 
+TEST_CASE("contact tables: limits have units, as other values have") {
+  const auto with = [](const std::string& lower) {
+    return read_model_text(box + "[[contact]]\nname = \"stop\"\nlimits = { x = [\"" + lower + "\", \"2 m\"] }\n",
+                           "t.toml");
+  };
+  for (const char* lower : {"-20 cm", "-0.2 m ", "-0.2[m]"}) CHECK(unilateral(with(lower)) == 2);
+  CHECK_THROWS_AS(with("-1 kg"), Error);
+}
+
 TEST_CASE("contact tables: every pair of spheres touches") {
   const model::Model model = read_model_text(R"(format = 1
 [parameters]

@@ -200,3 +200,20 @@ TEST_CASE("optimiser: a chain of twenty links takes seconds at most") {
   CHECK(built.functions[0].operations.flops() <= 4750);
   CHECK(seconds < tolerances::chain_seconds);
 }
+
+TEST_CASE("optimiser: squares of differences below a fraction are not multiplied out") {
+  // 1/(1 + ((x - 1)/w)^2) is 0.8 at x = 1 + w/2, where x^2 - 2 x + 1 has no correct digit; the same for a rate.
+  SystemBuilder k;
+  constexpr double width = 1e-7;
+  const Scalar w = k.p(0), one = k.number(1);
+  for (std::uint8_t order = 0; order < 2; ++order) {
+    const Scalar part = (k.q(0, order) - one) / w;
+    const Scalar kinetic = k.number(1, 2) * k.q(0, 1) * k.q(0, 1);
+    const auto built = build(lagrange(k, 1, kinetic, k.number(0), {one / (w * (one + part * part))}));
+    program::Arguments<double> at;
+    at.x = {0, 0};
+    at.x[order] = 1 + width / 2;
+    at.p = {width};
+    CHECK(program::interpret(built.functions[0], at).results[0][1] * width == doctest::Approx(0.8).epsilon(1e-7));
+  }
+}

@@ -210,3 +210,39 @@ TEST_CASE("passed over: a quotient whose divisor overflows is the limit that it 
     CHECK(std::abs(finished.final("x") - 0.4) < 1e-9);
   }
 }
+
+TEST_CASE("passed over: a narrow force in a difference of coordinates keeps its digits") {
+  // 0.3/w/(1 + ((x - 1)/w)^2) is narrow at x = 1, and w^2 + x^2 - 2 x + 1 consists of rounding there. The integral of
+  // the force is 0.3 (atan((x - 1)/w) + atan(1/w)).
+  const test::FinishedRun finished =
+      test::run_text("difference", particle("0.3/1e-7/(1 + ((x - 1[m])/(1e-7[m]))^2)", "") +
+                                       "[scene.default]\nt = [0, 3]\ninitial = { x = 0, x_dot = 1 }\n");
+  REQUIRE(finished.simulation.result.outcome == eom::Outcome::done);
+  const double x = finished.final("x");
+  const double exact = std::sqrt(1 + 0.6 * (std::atan((x - 1) / 1e-7) + std::atan(1 / 1e-7)));
+  CHECK(std::abs(finished.final("x_dot") - exact) < 1e-8);
+  CHECK(finished.simulation.result.statistics.steps < 1000);
+}
+
+TEST_CASE("passed over: implicit methods take differences where a derivative overflows and the force does not") {
+  // d/dx of c/cosh(x) is c sinh(x)/cosh(x)^2, inf/inf at x = 800, where the force is 1.
+  const test::FinishedRun finished = test::run_text("steep", particle("1[N] - 2[N]/cosh(x/(1[m]))", "") +
+                                                                 "[scene.default]\nsolver = \"radau5\"\nt = [0, 2]\n"
+                                                                 "initial = { x = 800, x_dot = 0 }\n");
+  REQUIRE(finished.simulation.result.outcome == eom::Outcome::done);
+  CHECK(finished.final("x") == doctest::Approx(802).epsilon(1e-12));
+  CHECK(finished.simulation.result.statistics.difference_evaluations > 0);
+}
+
+TEST_CASE("passed over: a kink narrower than the digits of the state is refused for that reason") {
+  const test::FinishedRun finished = test::run_text(
+      "kink", particle("-0.3[N]/1e-8*max(0, 1 - ((x - 1[m])/(1e-8[m]))^2)", "") +
+                  "[scene.default]\nt = [0, 3]\nrtol = 1e-12\natol = 1e-14\ninitial = { x = 0, x_dot = 1 }\n");
+  const run::RunResult& result = finished.simulation.result;
+  if (result.outcome == eom::Outcome::done) {
+    CHECK(finished.final("x_dot") == doctest::Approx(std::sqrt(0.2)).epsilon(1e-6));
+  } else {
+    CHECK(result.outcome == eom::Outcome::step_too_small);
+    CHECK(result.detail.find("rounding of the state hides its side") != std::string::npos);
+  }
+}

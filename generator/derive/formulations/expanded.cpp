@@ -21,9 +21,10 @@ FullEquations reduced(symbolic::Expander& expander, FullEquations equations) {
 /// Applies if the kinetic energy fits into the term budget of the expansion.
 std::optional<system::EquationSystem> by_expanded(Mechanics& m, system::Approach approach) {
   if (m.q.size() > most_coordinates) return std::nullopt;
-  symbolic::Expander expander(*m.dag, expanded_terms);
-  const std::optional<Ref> kinetic = expander(m.kinetic);
+  symbolic::Expander of_kinetic(*m.dag, expanded_terms);
+  const std::optional<Ref> kinetic = of_kinetic(m.kinetic);
   if (!kinetic) return std::nullopt;
+  symbolic::Expander expander(*m.dag, expanded_terms, nullptr, symbolic::PowersOfDifferences::kept);
   std::vector<Ref> Q = generalized_forces(m);
   for (Ref& q : Q) q = expander.expand_or_keep(q);
   const Ref T = *kinetic, U = expander.expand_or_keep(m.potential);
@@ -31,10 +32,11 @@ std::optional<system::EquationSystem> by_expanded(Mechanics& m, system::Approach
   if (approach == system::Approach::one) return assemble(m, full, nullptr, "expanded", approach);
   symbolic::Substitution imposed = constraint_substitution(m);
   // An expansion has a common denominator. A second expansion would multiply it into unrelated terms.
-  const auto constrained = [&](Ref whole, Ref reduced_whole) {
-    return imposed(whole) == whole ? reduced_whole : expander.expand_or_keep(imposed(reduced_whole));
+  const auto constrained = [&](Ref whole, Ref reduced_whole, symbolic::Expander& by) {
+    return imposed(whole) == whole ? reduced_whole : by.expand_or_keep(imposed(reduced_whole));
   };
-  const Ref T_constrained = constrained(m.kinetic, T), U_constrained = constrained(m.potential, U);
+  const Ref T_constrained = constrained(m.kinetic, T, of_kinetic),
+            U_constrained = constrained(m.potential, U, expander);
   const FullEquations motion = reduced(expander, euler_lagrange(m, T_constrained, U_constrained, Q, m.free));
   return assemble(m, full, &motion, "expanded", approach);
 }

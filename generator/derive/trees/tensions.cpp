@@ -15,13 +15,17 @@ constexpr std::size_t small = 40;  // terms: expressions within one link have fe
 /// Expands short expressions, with sin^2 + cos^2 = 1; leaves others unchanged.
 class Tidy {
  public:
-  explicit Tidy(Dag& dag) : dag_(dag), expand_(dag, small) {}
+  explicit Tidy(Dag& dag)
+      : dag_(dag), expand_(dag, small), forces_(dag, small, nullptr, symbolic::PowersOfDifferences::kept) {}
   Ref operator()(Ref r) { return expand_.expand_or_keep(r); }
   Ref dot(const Vec3& a, const Vec3& b) { return (*this)(symbolic::dot(dag_, a, b)); }
+  Ref component(const Vec3& direction, const Vec3& force) {
+    return forces_.expand_or_keep(symbolic::dot(dag_, direction, force));
+  }
 
  private:
   Dag& dag_;
-  symbolic::Expander expand_;
+  symbolic::Expander expand_, forces_;
 };
 
 /// Summands of a sum with their factors, so that those shared with the parent cancel exactly.
@@ -170,7 +174,7 @@ class Tensions {
     const Ref w = dag_.sub(weight_at(static_cast<int>(k)), weight_at(links_.links[k].parent));
     if (dag_.is_zero(w)) return w;
     // Within one link sines and cosines combine to squares, and normals are orthogonal.
-    const Ref along = k == source ? tidy_.dot(direction, force) : dot(dag_, direction, force);
+    const Ref along = k == source ? tidy_.component(direction, force) : dot(dag_, direction, force);
     return dag_.mul(w, along);
   }
 

@@ -101,7 +101,8 @@ class ChartSwitch {
   double unknown_distance() const { return unknown_side * std::max(problem_.rtol + problem_.atol, 1e-14); }
   void keep_angles_at_pole(std::size_t j, const Sample& last, Sample& next) const;
   double distance_from_pole(std::size_t j, const Sample& last, const Sample& next) const;
-  void pass_pole(const Sample& last, Sample& next);
+  void pass_pole(const StepView& step, const Sample& last, Sample& next);
+  double pole_time(const StepView& step, std::size_t angle, const Sample& last, const Sample& next) const;
   void make_continuous(std::size_t j, const std::vector<double>& near, std::span<double> own) const;
 
   const Problem& problem_;
@@ -200,7 +201,7 @@ inline void ChartSwitch::sample(const StepView& step, double until, const double
   for (std::size_t i = 0; i < next.x.size(); ++i) {
     if (!std::isfinite(next.x[i])) next.x[i] = i < last.x.size() ? last.x[i] : 0;  // exactly at the singularity
   }
-  if (turned > turns_in_a_sample) pass_pole(Sample(last), next);
+  if (turned > turns_in_a_sample) pass_pole(step, Sample(last), next);
   samples_.push_back(std::move(next));
 }
 
@@ -229,20 +230,35 @@ inline double ChartSwitch::distance_from_pole(std::size_t j, const Sample& last,
 
 /// Through a pole an angle jumps by half a turn, in no determined direction. Of the two angles behind it, the one
 /// closer to the start value follows; the larger one if both are as close.
-inline void ChartSwitch::pass_pole(const Sample& last, Sample& next) {
+inline void ChartSwitch::pass_pole(const StepView& step, const Sample& last, Sample& next) {
   for (std::size_t j = 0; j < problem_.charts.size(); ++j) {
     const ExchangedChart& chart = problem_.charts[j];
-    bool jumps = false;
+    std::size_t jumps = problem_.code->layout().size();  // the angle that jumps
     for (std::size_t k = 0; k < chart.angles.size(); ++k) {
       double& angle = next.x[chart.angles[k]];
       const double jump = angle - last.x[chart.angles[k]];
       if (!is_second(j) || k == chart.guarded || std::abs(std::abs(jump) - pi) > half_turn) continue;
-      jumps = true;
+      jumps = chart.angles[k];
       const double other = angle - std::copysign(2 * pi, jump), start = problem_.start[chart.angles[k]];
       const double closer = std::abs(other - start) - std::abs(angle - start);
       if (closer < -half_turn || (closer < half_turn && other > angle)) angle = other;
     }
-    if (jumps) poles_.push_back({next.t, chart.of});
+    if (jumps < next.x.size()) poles_.push_back({pole_time(step, jumps, last, next), chart.of});
+  }
+}
+
+/// The time between two samples at which an angle jumps by half a turn: bisection of the interpolated step.
+inline double ChartSwitch::pole_time(const StepView& step, std::size_t angle, const Sample& last,
+                                     const Sample& next) const {
+  std::vector<double> x(step.x0.size()), own(next.x.size());
+  double before = last.t, behind = next.t;
+  while (true) {
+    const double middle = before + (behind - before) / 2;
+    if (middle == before || middle == behind) return behind;
+    step.interpolate(middle, x);
+    to_own_charts(middle, x.data(), own);
+    const double turn = std::remainder(own[angle] - last.x[angle], 2 * pi);
+    (std::abs(turn) < pi / 2 ? before : behind) = middle;  // at the pole itself the angle has no value
   }
 }
 

@@ -292,7 +292,11 @@ inline bool Integration::observe_step(const StepView& step, const Observer& obse
   last_step_ = step.t1 - step.t0;
   exchange_due_ = context_.charts.has_charts() && context_.charts.observe_step(step);
   if (event && context_.charts.has_charts()) {
-    for (const ChartSwitch::Pole& pole : context_.charts.poles()) event({pole.t, "pole", pole.of}, step.x1);
+    for (const ChartSwitch::Pole& pole : context_.charts.poles()) {
+      std::vector<double> x(step.x1.size());
+      step.interpolate(pole.t, x);
+      event({pole.t, "pole", pole.of}, x);
+    }
   }
   const bool wanted = !observer || observer(step);
   context_.freeze_branches(step.t1, step.x1.data(), false);

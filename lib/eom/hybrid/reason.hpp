@@ -75,6 +75,10 @@ inline std::string sentence(const Reason& reason) {
              (reason.kind == Kind::friction_no_solution ? "no solution" : "several solutions") +
              ": friction changes its own normal force by more than that force (Painleve)";
     case Kind::surface:
+      // No motion slides along a kink without a jump: the last digit of the state decides its side.
+      if (reason.what == "max" || reason.what == "min" || reason.what == "abs")
+        return "a kink of " + reason.what + " is so narrow" + at +
+               " that rounding of the state hides its side: make it wider, or take coordinates that are 0 there";
       return "the motion slides along a surface of " + reason.what + ": on both sides it leads back to it," + at +
              "; for dry friction use a constraint with friction, or a smooth law";
     case Kind::reset_without_value: return "a new value that '" + reason.what + "' sets is not finite" + at;

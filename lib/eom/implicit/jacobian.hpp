@@ -65,9 +65,11 @@ class Jacobian {
     if (system_.jacobian != nullptr) {
       const int code = system_.jacobian(system_.self, t, x, dfdx_.data(), dfdt_.data());
       const bool complete = code == 0 || (code == no_time_derivative_here && differences_ == Differences::one_sided);
-      if (complete) return all_finite() ? 0 : code_not_finite;
-      if (code != no_jacobian_here && code != no_time_derivative_here) return code;
-      given = code == no_time_derivative_here;
+      // The derivative of a function may overflow where the function does not: sinh(x)/cosh(x)^2 beside 1/cosh(x).
+      const bool overflows = code == code_not_finite || (complete && !all_finite());
+      if (complete && !overflows) return 0;
+      if (code != no_jacobian_here && code != no_time_derivative_here && !overflows) return code;
+      given = code == no_time_derivative_here && !overflows && all_finite();
     }
     const std::size_t before = counts.rhs_evaluations;
     std::copy_n(x, n_, x_.data());
