@@ -29,24 +29,6 @@ Precise singular<Precise>() {
 /// units of the coordinates, and a state is known to 16 digits.
 constexpr int smallest_pivot_digits = 24;
 
-/// A state is known to 12 digits here, and to this part of a unit.
-constexpr int state_digits = 12, absolute_digits = 20;
-
-/// Throws std::domain_error if a diagonal entry of M, M(i, i) = values[i * stride + i], changes by more than itself
-/// within the digits of a coordinate: at the pole of an angle, m cos(be)^2 consists of rounding, however the
-/// coordinates of the model are written.
-template <class T>
-void require_regular_inertia(const ValueAndJacobian<T>& s, const State<T>& z, std::size_t n, std::size_t stride) {
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t entry = i * stride + i;
-    for (std::size_t d = 0; d < n; ++d) {
-      const T known_to = tiny<T>(state_digits) * magnitude(z[d]) + tiny<T>(absolute_digits);
-      require_domain(!(magnitude(s.jacobian(entry, d)) * known_to > magnitude(s.value[entry])),
-                     "the coordinates are singular there, or too close to where they are");
-    }
-  }
-}
-
 /// The place of a discrete value, which is no entry of the state.
 constexpr auto discrete = std::numeric_limits<std::size_t>::max();
 
@@ -216,7 +198,6 @@ void Flow::differentiate(const ValueAndJacobian<T>& s, const State<T>& z, Field<
   if constexpr (std::is_same_v<T, Precise>) {
     require_domain(solver.smallest_pivot() > tiny<Precise>(smallest_pivot_digits),
                    "the coordinates are singular there, or too close to where they are");
-    require_regular_inertia(s, z, n_, n_);
   }
   const Matrix<T> y = solver.solve(right);
   std::vector<T> force;  // of the constraints, on the side of f
@@ -297,7 +278,6 @@ void Flow::differentiate_held(const ValueAndJacobian<T>& s, const State<T>& z, F
     for (std::size_t j = 0; j < size; ++j) P(i, j) = s.value[i * size + j];
     right(i, 0) = -s.value[c0 + i];
   }
-  if constexpr (std::is_same_v<T, Precise>) require_regular_inertia(s, z, n_, size);
   const Elimination<T> solver(P, singular<T>());
   const Matrix<T> open = solver.null_space();
   field.undetermined = Matrix<T>(forces_.size(), open.cols);

@@ -137,19 +137,22 @@ void StartRows::linearise(std::uint8_t order, VectorXd& residual, MatrixXd& A) c
 
 // |psi_k| relative to the size of its linear terms, as in the contract.
 double StartRows::relative(const VectorXd& residual, const MatrixXd& A, std::uint8_t order, Eigen::Index k) const {
-  // A coordinate on which the row hardly depends is no scale of it: atan(z) does not vanish because z is large.
-  constexpr double negligible = 1e-8;
+  // A coordinate on which the row hardly depends is no scale of it if it ran away: atan(z) does not vanish because z is
+  // large.
+  constexpr double negligible = 1e-8, far = 1e6;
   const double steepest = A.row(k).cwiseAbs().maxCoeff();
-  double terms = 0, slopes = 0, largest = 0;
+  double terms = 0, slopes = 0, largest = 0, hardly = 0;
   for (std::size_t i = 0; i < n_; ++i) {
     const double x = order == 0 ? p_.q[s_.free[i]] : p_.qdot[s_.free[i]],
                  slope = std::abs(A(k, static_cast<Eigen::Index>(i)));
     terms += std::abs(slope * x);
     slopes += slope;
-    if (slope >= negligible * steepest) largest = std::max(largest, std::abs(x));
+    double& of = slope > 0 && slope < negligible * steepest ? hardly : largest;
+    of = std::max(of, std::abs(x));
   }
+  largest = std::max(largest, std::min(hardly, far * std::max(1.0, largest)));
   const double size = std::abs(residual(k));
-  // A residual below the last digit of the coordinates in it is 0, whatever its terms are.
+  // A residual below the last digit of the other coordinates is 0, whatever its terms are.
   if (size <= start_rounding * slopes * largest) return 0;
   // At rest every term of A qdot vanishes; b itself is then the scale.
   return terms > size ? size / terms : 1;

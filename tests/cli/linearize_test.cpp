@@ -219,24 +219,3 @@ TEST_CASE("linearize: a state at a singularity of its coordinates is refused, wi
   const Json found = document(folder, {"equilibria", "satellite.toml"});
   for (const Json& point : found["points"]) CHECK(std::abs(std::cos(point["values"]["be"].get<double>())) > 1e-6);
 }
-
-TEST_CASE("linearize, equilibria: angles that are written out are singular too") {
-  // The rod of two masses across the orbit: al has no inertia there but the rounding of cos(pi/2)^2.
-  const Folder folder;
-  std::string text = "format = 1\n[parameters]\nL = 0.01\n";
-  for (const char* sign : {"+", "-"}) {
-    const std::string s = sign, end = s == "+" ? "-" : "+";
-    text += "[[particle]]\nname = \"" + std::string(s == "+" ? "A" : "B") + "\"\nmass = 0.5\nposition = [\"r*cos(nu) " +
-            s + " L/2*cos(al+nu)*cos(be)\", \"r*sin(nu) " + s + " L/2*sin(al+nu)*cos(be)\", \"" + end +
-            "L/2*sin(be)\"]\n";
-  }
-  text +=
-      "[coordinates]\nr = {}\nnu = {}\nal = {}\nbe = {}\n[[force]]\ncentral_gravity = { GM = 1 }\n"
-      "[scene.default]\ninitial = { r = 1, nu_dot = 1, be = \"";
-  folder.write("rod.toml", text + "pi/2\" }\n");
-  CHECK(contains(expect(2, folder, {"linearize", "rod.toml"}).err, "the coordinates are singular there"));
-  const Json found = document(folder, {"equilibria", "rod.toml", "--starts", "4"});
-  for (const Json& point : found["points"]) CHECK(std::abs(std::cos(point["values"]["be"].get<double>())) > 1e-6);
-  folder.write("rod.toml", text + "pi/2 - 0.01\" }\n");
-  CHECK(document(folder, {"linearize", "rod.toml"})["A"].size() == 8);
-}
