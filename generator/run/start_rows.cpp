@@ -147,7 +147,7 @@ double StartRows::relative(const VectorXd& residual, const MatrixXd& A, std::uin
                  slope = std::abs(A(k, static_cast<Eigen::Index>(i)));
     terms += std::abs(slope * x);
     slopes += slope;
-    double& of = slope > 0 && slope < negligible * steepest ? hardly : largest;
+    double& of = slope < negligible * steepest ? hardly : largest;
     of = std::max(of, std::abs(x));
   }
   largest = std::max(largest, std::min(hardly, far * std::max(1.0, largest)));
