@@ -114,10 +114,10 @@ class FrictionProblem {
   limit(law) {
     const factors = new Float64Array(this.free.length);
     if (law.normal < 0) return [law.coefficient * Math.abs(law.given), factors];
-    const at = this.held.indexOf(law.normal), strength = law.coefficient * law.sign;
-    if (at >= 0) return [strength * this.h0[at], factors.map((_, k) => strength * this.H[at][k])];
+    const at = this.held.indexOf(law.normal), strength = law.coefficient * law.sign, given = law.coefficient * law.given;
+    if (at >= 0) return [strength * this.h0[at] + given, factors.map((_, k) => strength * this.H[at][k])];
     factors[this.free.indexOf(law.normal)] = strength;
-    return [0, factors];
+    return [given, factors];
   }
 
   // {force, velocity, speed} of all rows and laws, or null.
@@ -202,7 +202,7 @@ class FrictionProblem {
     for (const law of laws) {
       const slowest = Math.max(...law.tangents.map((row) => G[row][row]));
       if (!(slowest > 0)) continue;
-      const normal = law.normal < 0 ? Math.abs(law.given) : law.sign * force[law.normal], most = law.coefficient * Math.max(0, normal);
+      const normal = law.normal < 0 ? Math.abs(law.given) : law.sign * force[law.normal] + law.given, most = law.coefficient * Math.max(0, normal);
       const wanted = law.tangents.map((row) => force[row] - step(row, slowest)), length = Math.hypot(...wanted), factor = length > most ? most / length : 1;
       law.tangents.forEach((row, a) => { largest = Math.max(largest, Math.abs(factor * wanted[a] - force[row])); });
     }

@@ -112,6 +112,7 @@ class ContactTransitions extends ContactForces {
     let total = impulses.force;
     if (poisson) {  // restitution gives back a share of the impulses of compression; what comes to it may be more
       const share = total.map((value, i) => restitution[i] * Math.max(0, value)), after = total.map((value, i) => value + share[i]);
+      for (const law of problem.laws) if (law.normal >= 0) law.given = law.sign * share[law.normal];
       const more = solved(problem.G.map((row, i) => row.reduce((sum, g, k) => sum + g * after[k], problem.q[i]))).solve();
       if (more === null) return slowest();
       total = after.map((value, i) => value + more.force[i]);

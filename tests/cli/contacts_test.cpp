@@ -193,6 +193,22 @@ TEST_CASE("impacts: without friction Stronge's, Poisson's and Newton's laws agre
   }
 }
 
+TEST_CASE("impacts: friction of a point that slides acts during restitution too, by every law with friction") {
+  const Folder folder;
+  // It falls by 1.25: the tangential impulse is mu (1 + e) times that of v = sqrt(2 g 1.25).
+  const double mu = 0.2, e = 0.5, v = std::sqrt(2 * 9.81 * 1.25);
+  for (const std::string law : {"moreau", "poisson", "stronge"}) {
+    CAPTURE(law);
+    folder.write("model.toml",
+                 "format = 1\n[[particle]]\nname = \"P\"\nmass = 2\nposition = { cartesian = [\"x\", \"y\"] }\n"
+                 "[[force]]\ngravity = \"-9.81*E2\"\n[[constraint]]\nname = \"floor\"\nholonomic = \"y\"\nholds = "
+                 "\"unilateral\"\nrestitution = 0.5\nfriction = { static = 0.2, dynamic = 0.2 }\n[impacts]\nlaw = \"" +
+                     law + "\"\n[scene.default]\nt = [0, 0.7]\ninitial = { x_dot = 3, y = 1.25 }\n");
+    const double x_dot = document(folder, {"run", "model.toml"})["final"]["x_dot"].get<double>();
+    CHECK(x_dot == doctest::Approx(3 - mu * (1 + e) * v).epsilon(1e-10));  // exact but for the time of the impact
+  }
+}
+
 TEST_CASE("impacts: Stronge's law is refused for slip in two directions, and for simultaneous impacts") {
   refused(falling_rod("law = \"stronge\"\norder = \"simultaneous\"", 0.2, 0.5), "one contact at a time");
   std::string ball = falling("sphere = \"R\"");

@@ -28,7 +28,7 @@ struct FrictionLaw {
   std::vector<Eigen::Index> tangents;  // one or two
   Eigen::Index normal = -1;            // -1: the normal force is given
   double normal_sign = 1;              // the normal force is normal_sign * force
-  double given_normal = 0;
+  double given_normal = 0;             // beside a row: a further normal force, >= 0
   double coefficient = 0;
 };
 
@@ -75,7 +75,8 @@ inline double complementarity_residual(const FrictionProblem& p, const FrictionF
     double slowest = 0, square = 0, moved = 0;
     for (const Eigen::Index row : law.tangents) slowest = std::max(slowest, p.G(row, row));
     if (!(slowest > 0)) continue;
-    const double normal = law.normal < 0 ? std::abs(law.given_normal) : law.normal_sign * forces.force(law.normal);
+    const double normal =
+        law.normal < 0 ? std::abs(law.given_normal) : law.normal_sign * forces.force(law.normal) + law.given_normal;
     const double most = law.coefficient * std::max(0.0, normal);
     for (const Eigen::Index row : law.tangents) square += std::pow(forces.force(row) - step(row, slowest), 2);
     const double factor = square > most * most ? most / std::sqrt(square) : 1;
@@ -165,12 +166,13 @@ class Solver {
   double limit(const FrictionLaw& law, Vector& by_force) const {
     by_force = Vector::Zero(q_.size());
     if (law.normal < 0) return law.coefficient * std::abs(law.given_normal);
+    const double given = law.coefficient * law.given_normal;
     if (const Index held = held_place(law.normal); held >= 0) {
       by_force = law.coefficient * law.normal_sign * H_.row(held).transpose();
-      return law.coefficient * law.normal_sign * h0_(held);
+      return law.coefficient * law.normal_sign * h0_(held) + given;
     }
     by_force(place(law.normal)) = law.coefficient * law.normal_sign;
-    return 0;
+    return given;
   }
 
   FrictionForces by_pivoting(double softness, bool scaled) const {

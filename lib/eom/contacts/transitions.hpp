@@ -134,8 +134,12 @@ class Transitions {
     if (!impulses.found) return {Outcome::no_solution, 0, rows.fastest_contact()};
     Vector total = impulses.force;
     if (law == ImpactLaw::poisson) {
-      // Restitution gives back a share of the normal impulses of compression; what comes to it may be more.
+      // Restitution gives back a share of the normal impulses of compression; what comes to it may be more. Friction
+      // has the impulses of restitution as its normal forces.
       const Vector share = restitution.cwiseProduct(total.cwiseMax(0.0));
+      for (FrictionLaw& at : problem.laws) {
+        if (at.normal >= 0) at.given_normal = at.normal_sign * share(at.normal);
+      }
       problem.q += problem.G * (total + share);
       const FrictionForces more = solve(problem);
       if (!more.found) return {Outcome::no_solution, 0, rows.fastest_contact()};
