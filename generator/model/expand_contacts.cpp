@@ -85,10 +85,7 @@ class ContactTable {
   std::string expression(const Value& value, const std::string& what) const {
     if (!value.is(Value::Kind::text) && !value.is(Value::Kind::integer) && !value.is(Value::Kind::real))
       fail(value, fmt::format("gives {} as {}", what, kind_name(value.kind)), "write an expression or a number");
-    if (!value.is(Value::Kind::text) || !trailing_unit(value.text)) return "(" + value.text + ")";
-    constexpr const char* blanks = " \t\r\n";
-    const std::size_t end = value.text.find_last_not_of(blanks) + 1, unit = value.text.find_last_of(blanks, end - 1);
-    return fmt::format("(({})*1[{}])", value.text.substr(0, unit), value.text.substr(unit + 1, end - unit - 1));
+    return "(" + bracket_unit(value.text) + ")";
   }
   const std::vector<Value>& list(const Value& value, const std::string& what) const {
     if (!value.is(Value::Kind::array))

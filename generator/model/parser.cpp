@@ -268,6 +268,12 @@ std::optional<MeasuredUnit> trailing_unit(std::string_view text) {
   return last ? parse_unit(last->word) : std::nullopt;
 }
 
+std::string bracket_unit(std::string_view text) {
+  const auto last = last_word(text);
+  if (!last || !parse_unit(last->word)) return std::string(text);
+  return fmt::format("({})*1[{}]", last->before, last->word);
+}
+
 Syntax parse_quantity(const SourceText& text) {
   const auto last = last_word(text.text);
   if (!last) return parse_expression(text);

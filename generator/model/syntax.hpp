@@ -86,6 +86,8 @@ Syntax parse_expression(const SourceText& text);
 Syntax parse_comparison(const SourceText& text);
 /// The unit after the last blank, as in "9.81 m/s^2", if there is one.
 std::optional<MeasuredUnit> trailing_unit(std::string_view text);
+/// The same quantity as an expression: "(9.81)*1[m/s^2]". A text without such a unit stays as it is.
+std::string bracket_unit(std::string_view text);
 /// Like parse_expression, with an optional unit after a blank.
 Syntax parse_quantity(const SourceText& text);
 

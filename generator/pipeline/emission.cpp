@@ -216,11 +216,11 @@ Emission emit_model(std::shared_ptr<const model::Model> model, const EmissionReq
   context.jumps_in_time = run::may_jump_in_time(derived->candidates.front());
   add_start(request, *derived, context);
   if (has(request.with, "run")) context.run = run_text(*derived, scene, result.program);
-  if (context.jumps_in_time && !context.run && archive == nullptr) warn_of_impulses(request.target);
   if (request.single) emit::convert_to_single(result.program, context);
   result.single_error = context.single_error;
   result.files = archive != nullptr ? archive->make({*derived, result.program, context, request.format_version})
                                     : emit::emit(result.program, context, request.target);
+  if (context.jumps_in_time && !context.run && archive == nullptr) warn_of_impulses(request.target);
   result.seconds = derived->seconds;
   return result;
 }

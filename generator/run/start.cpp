@@ -376,13 +376,12 @@ class StartSolver {
 
   /// Subtracts the move; a smaller part of it if a function of the constraints, such as log, has no value there.
   /// Damped: or if the residuals, relative to their slopes, do not decrease enough.
-  void take_step(std::uint8_t order, const std::vector<std::size_t>& moving, Steps steps, VectorXd& move) {
+  /// residual, A: the rows before the step, and behind it after.
+  void take_step(std::uint8_t order, const std::vector<std::size_t>& moving, Steps steps, VectorXd& residual,
+                 MatrixXd& A, VectorXd& move) {
     constexpr int most_halvings = 20;
     constexpr double sufficient = 0.25;  // of the decrease of the linear model
     const std::vector<double> before = order == 0 ? p_.q : p_.qdot;
-    VectorXd residual;
-    MatrixXd A;
-    rows_.linearise(order, residual, A);
     const VectorXd scale = A.rowwise().norm().cwiseMax(std::numeric_limits<double>::min());
     const double size = residual.cwiseQuotient(scale).norm();
     double part = 1;
@@ -402,8 +401,8 @@ class StartSolver {
   bool iterate(std::uint8_t order, const std::vector<std::size_t>& free, bool partly, Steps steps = Steps::full) {
     VectorXd residual;
     MatrixXd A;
+    rows_.linearise(order, residual, A);
     for (int step = 0; step < newton_steps; ++step) {
-      rows_.linearise(order, residual, A);
       if (!residual.allFinite() || !A.allFinite()) return false;
       std::vector<std::size_t> moving;  // unknowns with a nonzero column
       for (const std::size_t i : free) {
@@ -420,7 +419,7 @@ class StartSolver {
         if (!keep_determined(columns, rank, start_rank_tolerance, move))
           return rows_.largest_residual(order) <= rounding;
       }
-      take_step(order, moving, steps, move);
+      take_step(order, moving, steps, residual, A, move);
       double size = move.cwiseAbs().maxCoeff(), scale = 0;
       for (const std::size_t i : moving) scale = std::max(scale, std::abs(rows_.value({s_.free[i], order})));
       if (size <= start_rounding * scale || rows_.largest_residual(order) <= start_rounding)

@@ -57,6 +57,11 @@ bool is_norm(const Dag& dag, const Node& node) {
          dag.value(node.args[1]) <= 1;
 }
 
+/// A power with any other exponent may be a divisor.
+bool has_positive_exponent(const Dag& dag, const Node& power) {
+  return dag.is_constant(power.args[1]) && cln::plusp(dag.value(power.args[1]));
+}
+
 /// Adds the factors of a denominator, powers and roots without their exponents.
 void add_factors(const Dag& dag, Ref denominator, std::set<Ref>& divisors) {
   std::vector<Ref> stack{denominator};
@@ -80,7 +85,7 @@ VanishingNorms vanishing_norms(const Dag& dag, const std::vector<Ref>& roots) {
   for (const Ref r : nodes) {
     const Node& node = dag[r];
     if (node.op == Op::div) add_factors(dag, node.args[1], divisors);
-    if (node.op == Op::pow && !is_norm(dag, node)) add_factors(dag, node.args[0], divisors);  // it may be negative
+    if (node.op == Op::pow && !has_positive_exponent(dag, node)) add_factors(dag, node.args[0], divisors);
     if (is_norm(dag, node)) norms.push_back(r);
   }
   Bounds bounds(dag);

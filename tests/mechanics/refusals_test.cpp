@@ -335,3 +335,16 @@ TEST_CASE("mechanics rejects: a constraint whose gradient vanishes where it hold
     CHECK(refusal(planar + "[[constraint]]\nname = \"c\"\nholonomic = \"" + sound + "\"\n").message == "accepted");
   }
 }
+
+TEST_CASE("parameters that share others are evaluated once each") {
+  // p_k = p_(k-1)/2 + p_(k/2): as a tree, p_150 has more than 1e9 nodes.
+  std::string text = "format = 1\n[parameters]\np0 = 1\n";
+  for (int k = 1; k <= 150; ++k)
+    text += "p" + std::to_string(k) + " = \"p" + std::to_string(k - 1) + "*0.5 + p" + std::to_string(k / 2) + "\"\n";
+  text +=
+      "[coordinates]\nx = {}\n[[particle]]\nname = \"P\"\nmass = 1\nposition = [\"x\", 0, 0]\n[[force]]\n"
+      "generalized = { x = \"-p150*";
+  CHECK(refusal(text + "x\" }\n").message == "accepted");
+  CHECK(refusal(text + "x/(exp(p150*1000) - 1)\" }\n").message.find("larger than the largest double") !=
+        std::string::npos);
+}

@@ -121,8 +121,11 @@ TEST_CASE("calculus: Jacobians take 0 as the slope of a norm at 0, and no other 
     const Ref twice = partial_derivative(dag, x_symbol, norms)(forward);
     CHECK(at(twice, 0) == 0);
     // What divides by the norm has no value where it is 0.
-    for (const Ref divided : {dag.div(x, norm), dag.div(x, dag.mul(y, dag.power(norm, 3)))})
+    for (const Ref divided : {dag.div(x, norm), dag.div(x, dag.mul(y, dag.power(norm, 3))),
+                              dag.pow(square, dag.constant(Rational(-1) / 3)), dag.pow(square, y)})
       CHECK(vanishing_norms(dag, {drag, divided}).empty());
+    const Ref multiplied = dag.pow(square, dag.constant(Rational(4) / 3));
+    CHECK(vanishing_norms(dag, {drag, multiplied}) == VanishingNorms{norm});
   }
   const Ref softened = dag.add(square, dag.one());
   for (const Ref other :

@@ -4,10 +4,22 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
+#include "eom/expressions/operations.hpp"
 #include "eom/hybrid/text.hpp"
 
 namespace eom::hybrid {
+
+/// Whether the function of a kink, by its name in the code's list, is continuous there: only its slope jumps.
+constexpr bool is_continuous_kink(std::string_view function) {
+  using expressions::Op;
+  for (auto op = std::uint8_t{0}; op <= static_cast<std::uint8_t>(Op::select); ++op) {
+    const auto each = static_cast<Op>(op);
+    if (is_kink(each) && !jumps(each) && function == name_of(each)) return true;
+  }
+  return false;
+}
 
 /// Why a run ended, if its outcome alone does not give it.
 struct Reason {
@@ -76,7 +88,7 @@ inline std::string sentence(const Reason& reason) {
              ": friction changes its own normal force by more than that force (Painleve)";
     case Kind::surface:
       // No motion slides along a kink without a jump: the last digit of the state decides its side.
-      if (reason.what == "max" || reason.what == "min" || reason.what == "abs")
+      if (is_continuous_kink(reason.what))
         return "a kink of " + reason.what + " is so narrow" + at +
                " that rounding of the state hides its side: make it wider, or take coordinates that are 0 there";
       return "the motion slides along a surface of " + reason.what + ": on both sides it leads back to it," + at +
