@@ -225,20 +225,13 @@ TEST_CASE("passed over: a narrow force in a difference of coordinates keeps its 
 }
 
 TEST_CASE("passed over: implicit methods take differences where a derivative overflows and the force does not") {
-  // d/dx of c/cosh(x) is c sinh(x)/cosh(x)^2, inf/inf at 800, where the force is 1; rodas takes df/dt too.
-  struct Case {
-    const char *force, *solver, *scene;
-    double end;
-  };
-  for (const Case& c : {Case{"1[N] - 2[N]/cosh(x/(1[m]))", "radau5", "t = [0, 2]\ninitial = { x = 800 }\n", 802},
-                        Case{"1[N] - 2[N]/cosh(t/(1[s]))", "rodas", "t = [800, 802]\ninitial = { x = 800 }\n", 802}}) {
-    CAPTURE(std::string(c.solver));
-    const test::FinishedRun finished =
-        test::run_text("steep", particle(c.force, "") + "[scene.default]\nsolver = \"" + c.solver + "\"\n" + c.scene);
-    REQUIRE(finished.simulation.result.outcome == eom::Outcome::done);
-    CHECK(finished.final("x") == doctest::Approx(c.end).epsilon(1e-12));  // the motion is a parabola
-    CHECK(finished.simulation.result.statistics.difference_evaluations > 0);
-  }
+  // d/dx of c/cosh(x) is c sinh(x)/cosh(x)^2, inf/inf at x = 800, where the force is 1.
+  const test::FinishedRun finished = test::run_text("steep", particle("1[N] - 2[N]/cosh(x/(1[m]))", "") +
+                                                                 "[scene.default]\nsolver = \"radau5\"\nt = [0, 2]\n"
+                                                                 "initial = { x = 800, x_dot = 0 }\n");
+  REQUIRE(finished.simulation.result.outcome == eom::Outcome::done);
+  CHECK(finished.final("x") == doctest::Approx(802).epsilon(1e-12));
+  CHECK(finished.simulation.result.statistics.difference_evaluations > 0);
 }
 
 TEST_CASE("passed over: a kink narrower than the digits of the state is refused for that reason") {

@@ -66,8 +66,8 @@ class Jacobian {
       const int code = system_.jacobian(system_.self, t, x, dfdx_.data(), dfdt_.data());
       const bool complete = code == 0 || (code == no_time_derivative_here && differences_ == Differences::one_sided);
       // The derivative of a function may overflow where the function does not: sinh(x)/cosh(x)^2 beside 1/cosh(x).
-      given = (complete || code == no_time_derivative_here) && is_finite(dfdx_);
-      if (complete && given && (differences_ == Differences::one_sided || is_finite(dfdt_))) return 0;
+      given = (complete || code == no_time_derivative_here) && all_finite();
+      if (complete && given) return 0;
       if (!complete && code != no_jacobian_here && code != no_time_derivative_here && code != code_not_finite)
         return code;
     }
@@ -76,7 +76,7 @@ class Jacobian {
     int code = given ? 0 : in_state(t, x, f, h, counts);
     if (code == 0 && differences_ == Differences::central) code = in_time(t, f, h, counts);  // not needed by the others
     counts.difference_evaluations += counts.rhs_evaluations - before;
-    return code != 0 || is_finite(dfdx_) ? code : code_not_finite;
+    return code != 0 || all_finite() ? code : code_not_finite;
   }
 
  private:
@@ -140,8 +140,8 @@ class Jacobian {
     return 0;
   }
 
-  static bool is_finite(const std::vector<double>& values) {
-    return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+  bool all_finite() const {
+    return std::all_of(dfdx_.begin(), dfdx_.end(), [](double value) { return std::isfinite(value); });
   }
 
   System system_;
