@@ -62,6 +62,15 @@ std::string si_unit(const model::Dimension& dimension) {
   return model::is_one(dimension) ? "rad" : model::text_of(dimension);
 }
 
+void require_dimension(const std::string& command, const std::string& name, const model::MeasuredUnit& unit,
+                       const Stated& stated) {
+  if (!stated.dimension || model::same(unit.dimension, *stated.dimension)) return;
+  const std::string si = si_unit(*stated.dimension);
+  throw Error(command, {},
+              fmt::format("{} is set in {}, and the model has it in {}", model::quote(name), unit.text, si),
+              fmt::format("give a value in {} or a multiple of it", si));
+}
+
 }  // namespace
 
 Quantity parse_quantity(const std::string& text, const std::string& shown) {
@@ -102,12 +111,7 @@ std::map<std::string, Rational> in_model_units(const std::string& command, const
   for (const auto& [name, quantity] : values) {
     result[name] = quantity.value;
     const Stated stated = stated_in(model, name);
-    if (quantity.unit && stated.dimension && !model::same(quantity.unit->dimension, *stated.dimension)) {
-      throw Error(command, {},
-                  fmt::format("{} is set in {}, and the model has it in {}", model::quote(name), quantity.unit->text,
-                              si_unit(*stated.dimension)),
-                  fmt::format("give a value in {} or a multiple of it", si_unit(*stated.dimension)));
-    }
+    if (quantity.unit) require_dimension(command, name, *quantity.unit, stated);
     if (!quantity.unit && stated.unit) {
       const std::string value = symbolic::decimal_text(quantity.value), si = si_unit(stated.unit->dimension);
       print_message(format_warning(
@@ -120,15 +124,18 @@ std::map<std::string, Rational> in_model_units(const std::string& command, const
   return result;
 }
 
-void warn_of_other_units(const model::Model& model, const std::vector<std::string>& names, const std::string& option) {
-  for (const std::string& name : names) {
-    const Stated stated = stated_in(model, name);
-    if (!stated.unit) continue;
+void check_units(const std::string& command, const model::Model& model, const std::vector<std::string>& names,
+                 const std::vector<std::optional<model::MeasuredUnit>>& units) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const Stated stated = stated_in(model, names[i]);
+    if (units[i]) require_dimension(command, names[i], *units[i], stated);
+    if (units[i] || !stated.unit) continue;
     const std::string si = si_unit(stated.unit->dimension);
     print_message(format_warning(
         {SourceLocation{},
-         fmt::format("the model states {} in {}, and {} takes its values as {}", name, stated.unit->text, option, si),
-         fmt::format("give its values in {}, or state {} in {} in the model if they are", si, name, si)}));
+         fmt::format("the model states {} in {}, and {} takes its values as {}", names[i], stated.unit->text, command,
+                     si),
+         fmt::format("write its values with a unit, or state {} in {} in the model if they are", names[i], si)}));
   }
 }
 

@@ -33,8 +33,9 @@ std::map<std::string, Quantity> parse_assignments(const std::string& command, co
 std::map<std::string, symbolic::Rational> in_model_units(const std::string& command, const model::Model& model,
                                                          const std::map<std::string, Quantity>& values);
 
-/// Prints a warning for each of `names`, whose numbers an option takes in SI units, that the model states in another
-/// unit.
-void warn_of_other_units(const model::Model& model, const std::vector<std::string>& names, const std::string& option);
+/// Requires `units`, in which the values of `names` were written, to have the dimensions that the model states, as
+/// in_model_units. Prints a warning for each name without one that the model states in another unit than SI.
+void check_units(const std::string& command, const model::Model& model, const std::vector<std::string>& names,
+                 const std::vector<std::optional<model::MeasuredUnit>>& units);
 
 }  // namespace eomgen::cli

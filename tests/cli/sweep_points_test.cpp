@@ -47,6 +47,36 @@ TEST_CASE("sweep: values of a parameter that the model states in degrees are rad
   CHECK_FALSE(contains(expect(0, folder, {"sweep", "slope.toml", "--grid", "m=1,2", "--out", "b.csv"}).err, warning));
 }
 
+TEST_CASE("sweep: values with units are those in SI units, of the dimension that the model states") {
+  const Folder folder;
+  folder.write("slope.toml",
+               "format = 1\n[parameters]\nm = \"1 kg\"\nal = \"30 deg\"\ng = \"9.81 m/s^2\"\n[coordinates]\nx = \"m\"\n"
+               "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"x*cos(al)\", 0, \"x*sin(al)\"]\n"
+               "[[force]]\ngravity = \"-g*E3\"\n[scene.default]\nt = [0, 1]\ninitial = { x = 1 }\n");
+  const auto rows = [&](const Words& axes) {
+    const auto done = expect(0, folder, with(with({"sweep", "slope.toml"}, axes), {"--out", "a.csv", "--seed", "1"}));
+    CHECK_FALSE(contains(done.err, "takes its values"));
+    return text_of_rows(folder.read("a.csv"));
+  };
+  const std::string quarter = "1.5707963267948966";
+  CHECK(rows({"--grid", "al=0deg:90deg:3"}) == rows({"--grid", "al=0:" + quarter + "rad:3"}));
+  CHECK(rows({"--grid", "x=5mm,1m", "--grid", "x_dot=0,36km/h"}) ==
+        rows({"--grid", "x=0.005,1", "--grid", "x_dot=0,10"}));
+  CHECK(rows({"--sample", "al=0:90deg", "--samples", "3"}) ==
+        rows({"--sample", "al=0:" + quarter + "rad", "--samples", "3"}));
+  const auto refused = [&](const std::string& option, const std::string& axis, const std::string& what) {
+    const Words more = option == "--sample" ? Words{"--samples", "3"} : Words{};
+    CAPTURE(axis);
+    CHECK(contains(expect(2, folder, with({"sweep", "slope.toml", option, axis}, more)).err, what));
+  };
+  refused("--grid", "al=10:30deg:3", "mixes deg with other units");
+  refused("--grid", "x=1m,2kg", "mixes m with other units");
+  refused("--sample", "al=10deg:20", "mixes deg with other units");
+  refused("--grid", "x=1kg,2kg", "'x' is set in kg, and the model has it in m");
+  refused("--sample", "m=1m:2m", "'m' is set in m, and the model has it in kg");
+  refused("--grid", "x=1furlong:2:3", "which is no unit");
+}
+
 TEST_CASE("sweep: errors in a file of points are reported with their line") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());

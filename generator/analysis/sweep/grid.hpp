@@ -4,9 +4,11 @@
 
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "model/units.hpp"
 #include "symbolic/dag.hpp"
 
 namespace eomgen::analysis {
@@ -20,7 +22,8 @@ struct GridAxis {
   std::vector<symbolic::Rational> values;
   symbolic::Rational from, to;  // ends of a range
   bool logarithmic = false;
-  std::size_t count = 0;  // at least 2 for a range
+  std::size_t count = 0;                      // at least 2 for a range
+  std::optional<model::MeasuredUnit> unit{};  // in which the values were written, if in any; they are in SI units
 
   symbolic::Rational value(std::size_t i) const;
   /// Returns why some values of the range would be undefined; empty if all are defined.

@@ -17,8 +17,15 @@ SweepPoints::SweepPoints(std::optional<Grid> grid, std::optional<Sampling> sampl
     : grid_(std::move(grid)), samples_(std::move(samples)), listed_(std::move(listed)) {
   if (grid_) {
     size_ = grid_->size();
-    for (const GridAxis& axis : grid_->axes()) names_.push_back(axis.parameter);
+    for (const GridAxis& axis : grid_->axes()) {
+      names_.push_back(axis.parameter);
+      units_.push_back(axis.unit);
+    }
   }
+  if (samples_) {
+    for (const SampledAxis& axis : samples_->axes()) units_.push_back(axis.unit);
+  }
+  if (listed_) units_.resize(units_.size() + listed_->names.size());
   if (!samples_ && !listed_) return;
   const std::vector<std::string> more = samples_ ? samples_->names() : listed_->names;
   names_.insert(names_.end(), more.begin(), more.end());

@@ -30,6 +30,8 @@ class SweepPoints {
   SweepPoints(std::optional<Grid> grid, std::optional<Sampling> samples, std::optional<ListedPoints> listed);
 
   const std::vector<std::string>& names() const { return names_; }
+  /// Units in which the values of each name were written, if in any.
+  const std::vector<std::optional<model::MeasuredUnit>>& units() const { return units_; }
   std::size_t size() const { return size_; }
   /// Values of one point by name. Samples, or the points of the list, change fastest.
   std::map<std::string, symbolic::Rational> point(std::size_t index) const;
@@ -39,6 +41,7 @@ class SweepPoints {
   std::optional<Sampling> samples_;
   std::optional<ListedPoints> listed_;
   std::vector<std::string> names_;
+  std::vector<std::optional<model::MeasuredUnit>> units_;  // of names_
   std::size_t size_ = 1;
 };
 

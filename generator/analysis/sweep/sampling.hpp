@@ -4,9 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "model/units.hpp"
 #include "symbolic/dag.hpp"
 
 namespace eomgen::analysis {
@@ -23,6 +25,7 @@ struct SampledAxis {
   std::string parameter;
   double a = 0, b = 0;
   Kind kind = Kind::uniform;
+  std::optional<model::MeasuredUnit> unit{};  // in which a and b were written, if in any; they are in SI units
 
   /// Returns why some samples would be undefined or infinite; empty if all are finite.
   std::string domain_error() const;
@@ -34,6 +37,7 @@ class Sampling {
   /// than the design supports.
   Sampling(std::vector<SampledAxis> axes, std::size_t count, Design design, std::uint64_t seed);
 
+  const std::vector<SampledAxis>& axes() const { return axes_; }
   std::vector<std::string> names() const;
   std::size_t size() const { return count_; }
   /// Values of one sample, in the order of names().

@@ -20,12 +20,14 @@ using analysis::SampledAxis;
 using symbolic::Rational;
 
 [[noreturn]] void wrong_grid(const std::string& what) {
-  throw Error("sweep", {}, what, "write --grid NAME=FROM:TO:COUNT, NAME=FROM:TO:log:COUNT, or NAME=a,b,c, in SI units");
+  throw Error("sweep", {}, what,
+              "write --grid NAME=FROM:TO:COUNT, NAME=FROM:TO:log:COUNT, or NAME=a,b,c, in SI units or as 30deg, 5mm");
 }
 [[noreturn]] void wrong_sample(const std::string& what) {
   throw Error(
       "sweep", {}, what,
-      "write --sample NAME=FROM:TO, NAME=FROM:TO:log or NAME=MEAN:DEVIATION:normal in SI units, with --samples N");
+      "write --sample NAME=FROM:TO, NAME=FROM:TO:log or NAME=MEAN:DEVIATION:normal, in SI units or as 30deg, 5mm, with "
+      "--samples N");
 }
 
 std::vector<std::string> parts(const std::string& text, char delimiter) {
@@ -47,6 +49,29 @@ std::pair<std::string, std::string> assignment(const std::string& text, Wrong&& 
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
+/// Values of one parameter, written with units of one dimension, or all without; 0 needs none.
+class WrittenValues {
+ public:
+  explicit WrittenValues(const std::string& text) : text_(text) {}
+
+  /// The next value in SI units.
+  template <class Wrong>
+  Rational next(const std::string& written, Wrong&& wrong) {
+    const Quantity quantity = parse_quantity(written, text_);
+    if (quantity.unit && !unit_) unit_ = quantity.unit;
+    if (!quantity.unit && !cln::zerop(quantity.value)) bare_ = true;
+    if (unit_ && (bare_ || (quantity.unit && !model::same(quantity.unit->dimension, unit_->dimension))))
+      wrong(fmt::format("{} mixes {} with other units", model::quote(text_), unit_->text));
+    return quantity.value;
+  }
+  const std::optional<model::MeasuredUnit>& unit() const { return unit_; }
+
+ private:
+  const std::string& text_;
+  std::optional<model::MeasuredUnit> unit_;
+  bool bare_ = false;
+};
+
 std::size_t count_of(const std::string& text, const std::string& axis) {
   const Rational value = parse_decimal(text, axis);
   if (cln::denominator(value) != 1 || value < 2)
@@ -59,18 +84,21 @@ std::size_t count_of(const std::string& text, const std::string& axis) {
 GridAxis axis_of(const std::string& text) {
   const auto [parameter, values] = assignment(text, wrong_grid);
   GridAxis axis{parameter, {}, 0, 0};
+  WrittenValues written(text);
   const std::vector<std::string> fields = parts(values, ':');
   if (fields.size() == 1) {
-    for (const std::string& value : parts(values, ',')) axis.values.push_back(parse_decimal(value, text));
+    for (const std::string& value : parts(values, ',')) axis.values.push_back(written.next(value, wrong_grid));
     axis.count = axis.values.size();
+    axis.unit = written.unit();
     return axis;
   }
   if (fields.size() > 4 || fields.size() == 2) wrong_grid(fmt::format("{} is no range of values", model::quote(text)));
   const std::string kind = fields.size() == 4 ? fields[2] : "lin";
   if (kind != "lin" && kind != "log")
     wrong_grid(fmt::format("{} has {} where lin or log is asked", model::quote(text), model::quote(kind)));
-  axis.from = parse_decimal(fields[0], text);
-  axis.to = parse_decimal(fields[1], text);
+  axis.from = written.next(fields[0], wrong_grid);
+  axis.to = written.next(fields[1], wrong_grid);
+  axis.unit = written.unit();
   axis.logarithmic = kind == "log";
   axis.count = count_of(fields.back(), text);
   if (const std::string why = axis.domain_error(); !why.empty()) wrong_grid(model::quote(text) + " " + why);
@@ -82,13 +110,15 @@ SampledAxis sampled_axis_of(const std::string& text) {
   const std::vector<std::string> fields = parts(values, ':');
   if (fields.size() < 2 || fields.size() > 3)
     wrong_sample(fmt::format("{} is no range of samples", model::quote(text)));
-  const auto number = [&text](const std::string& field) {
-    const Rational value = parse_decimal(field, text);
+  WrittenValues written(text);
+  const auto number = [&](const std::string& field) {
+    const Rational value = written.next(field, wrong_sample);
     const double rounded = cln::double_approx(value);
     if (rounded == 0 && !cln::zerop(value)) wrong_sample(model::quote(text) + " leaves the range of binary64");
     return rounded;
   };
   SampledAxis axis{parameter, number(fields[0]), number(fields[1])};
+  axis.unit = written.unit();
   const std::string kind = fields.size() == 3 ? fields[2] : "lin";
   if (kind == "log")
     axis.kind = SampledAxis::Kind::logarithmic;

@@ -112,7 +112,8 @@ Sweep::Sweep(const SweepOptions& options, const CommonOptions& common, const mod
                 fmt::format("{} is written by one process that makes the whole sweep", model::quote(file_)),
                 "write tables as .csv with --shard (1/1 for all), and join them by eomgen merge TABLES -o " + file_);
   }
-  if (common.group == nullptr || common.group->is_leader()) warn_of_other_units(model, points_.names(), "sweep");
+  if (common.group == nullptr || common.group->is_leader())
+    check_units("sweep", model, points_.names(), points_.units());
   if (options.ensemble) solver_ = pipeline::ensemble_solver(model.scene(options.scene), overrides_);
 }
 
