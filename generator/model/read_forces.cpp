@@ -71,17 +71,24 @@ void ForcesReader::read() {
 // A weight in [energy] potential acts once more by gravity.
 void ForcesReader::warn_of_repeated_weight() const {
   if (model_.energy.potential == no_node || (model_.particles.empty() && model_.bodies.empty())) return;
-  const std::set<std::uint32_t> of_potential = resolver_.parameters_in(model_.energy.potential);
+  const Resolver::Constants of_potential = resolver_.constants_in(model_.energy.potential);
+  const auto common = [](const auto& constants, const auto& others) {
+    return std::find_if(constants.begin(), constants.end(), [&](const auto& c) { return others.contains(c); });
+  };
   for (const Force& force : model_.forces) {
     if (force.acceleration() == no_node) continue;
-    for (const std::uint32_t parameter : resolver_.parameters_in(force.acceleration())) {
-      if (!of_potential.contains(parameter)) continue;
-      resolver_.warn(force.span,
-                     fmt::format("gravity and the potential of [energy] both contain '{}': both act",
-                                 model_.parameters[parameter].name),
-                     "leave out one of them if the potential is that of the weights");
-      break;
-    }
+    const Resolver::Constants of_gravity = resolver_.constants_in(force.acceleration());
+    const auto parameter = common(of_gravity.parameters, of_potential.parameters);
+    const auto number = common(of_gravity.numbers, of_potential.numbers);
+    std::string both;
+    if (parameter != of_gravity.parameters.end())
+      both = quote(model_.parameters[*parameter].name);
+    else if (number != of_gravity.numbers.end())
+      both = fmt::format("{}", cln::double_approx(*number));
+    else
+      continue;
+    resolver_.warn(force.span, fmt::format("gravity and the potential of [energy] both contain {}: both act", both),
+                   "leave out one of them if the potential is that of the weights");
   }
 }
 

@@ -362,8 +362,8 @@ bool Resolver::uses_parameters(NodeId root) const {
   return false;
 }
 
-std::set<std::uint32_t> Resolver::parameters_in(NodeId root) const {
-  std::set<std::uint32_t> found;
+Resolver::Constants Resolver::constants_in(NodeId root) const {
+  Constants found;
   std::set<NodeId> seen;
   std::vector<NodeId> stack{root};
   while (!stack.empty()) {
@@ -371,7 +371,12 @@ std::set<std::uint32_t> Resolver::parameters_in(NodeId root) const {
     stack.pop_back();
     if (id == no_node || !seen.insert(id).second) continue;
     const Node& node = model_.arena[id];
-    if (node.op == Op::parameter) found.insert(node.index);
+    if (node.op == Op::number && cln::denominator(node.value) != 1 && cln::abs(node.value) > 1)
+      found.numbers.insert(cln::abs(node.value));
+    if (node.op == Op::parameter) {
+      found.parameters.insert(node.index);
+      stack.push_back(model_.parameters[node.index].value);
+    }
     if (node.op == Op::definition) stack.push_back(model_.definitions[node.index].expression);
     for (const NodeId child : node.args) stack.push_back(child);
   }

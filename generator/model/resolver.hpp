@@ -112,8 +112,12 @@ class Resolver {
   /// `what`, `problem`: "the period of 'S'", "is not positive".
   [[noreturn]] void refuse_value(const TypedNode& value, Span span, const std::string& what, const std::string& problem,
                                  std::string remedy);
-  /// Parameters that an expression contains, also through definitions.
-  std::set<std::uint32_t> parameters_in(NodeId node) const;
+  struct Constants {
+    std::set<std::uint32_t> parameters;
+    std::set<Rational> numbers;  // above 1 and no integers, such as 9.81; of values of the parameters too
+  };
+  /// Constants that an expression contains, also through definitions.
+  Constants constants_in(NodeId node) const;
 
  private:
   /// The declaration of the parameter that an expression consists of; nullptr if it is none.

@@ -198,7 +198,11 @@ TEST_CASE("gravity beside a potential with the same parameter warns") {
   CHECK(warnings("m*g*R*cos(theta)")[0] ==
         "gravity and the potential of [energy] both contain 'g': both act: leave out one of them if the potential is "
         "that of the weights");
+  // The value of g, written out.
+  REQUIRE(warnings("9.81*m*R*cos(theta)").size() == 1);
+  CHECK(warnings("9.81*m*R*cos(theta)")[0].starts_with("gravity and the potential of [energy] both contain 9.81: "));
   CHECK(warnings("k*R^2/2").empty());
+  CHECK(warnings("1.5*k*R^2").empty());
 }
 
 TEST_CASE("units: formulas in a range or an armature of a coordinate state no unit") {
