@@ -407,7 +407,8 @@ linear::Linearisation linearise_at_state(const SteadyProblem& p, std::uint64_t s
   } catch (const std::domain_error& error) {
     const NonsmoothTerm source = find_nonsmooth_term(p, p.z);
     throw Error("linearize", source.where, fmt::format("{} no slope at this state: {}", source.what, error.what()),
-                "linearise at another state, or put a smooth law in place of the one that has a kink or a root there");
+                "linearise at another state, take coordinates that are regular there, or put a smooth law in place of "
+                "the one that has a kink or a root there");
   }
 }
 

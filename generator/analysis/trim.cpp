@@ -114,7 +114,8 @@ Trim trim_inputs(const SteadyProblem& p, const std::vector<std::string>& names) 
   } catch (const std::domain_error& error) {
     const NonsmoothTerm source = find_nonsmooth_term(p, trim.z);
     throw Error("equilibria", source.where, fmt::format("{} no slope at this state: {}", source.what, error.what()),
-                "choose another state, or put a smooth law in place of the one that has a kink or a root there");
+                "choose another state, take coordinates that are regular there, or put a smooth law in place of the "
+                "one that has a kink or a root there");
   }
   std::vector<std::string> moving;
   for (std::size_t i = 0; i < rates.size(); ++i) {

@@ -174,6 +174,7 @@ class Search {
       ++result_.points[k].reached;
       return k;
     }
+    flow_.require_regular(z, r_.setting);
     result_.points.push_back({z, found->parameter_change, family_directions(z).cols});
     if (result_.points.back().family > 0) ++members_;
     return result_.points.size() - 1;

@@ -7,6 +7,8 @@
 #include <span>
 #include <type_traits>
 
+#include "model/units.hpp"
+
 namespace eomgen::linear {
 
 using symbolic::SymbolKind;
@@ -28,6 +30,11 @@ Precise singular<Precise>() {
 /// A smaller pivot of M and A means that the coordinates are singular: it is the square of the distance from there, in
 /// units of the coordinates, and a state is known to 16 digits.
 constexpr int smallest_pivot_digits = 24;
+
+constexpr const char* singular_coordinates = "the coordinates are singular there, or too close to where they are";
+
+/// The largest relative change of an acceleration per force by the rounding of a coordinate: A is printed in 7 digits.
+constexpr double largest_rounding = 1e-6;
 
 /// The place of a discrete value, which is no entry of the state.
 constexpr auto discrete = std::numeric_limits<std::size_t>::max();
@@ -64,6 +71,11 @@ Flow::Flow(mechanics::Mechanics& m, const system::EquationSystem& s, const std::
     inputs_ += input.source == model::Input::Source::contacts ? 0 : 1;  // these come last
   place_.assign(m.q.size(), 0);
   for (std::size_t i = 0; i < n_; ++i) place_[s.free[i]] = i;
+  // Angles, and coordinates of unknown units, change by 1; lengths by their values alone.
+  for (const std::uint32_t i : s.free) {
+    const auto& dimension = m.model->coordinates[i].unit.dimension;
+    scales_.push_back(dimension && !model::is_one(*dimension) ? 0 : 1);
+  }
   for (const char* suffix : {"", "_dot"}) {
     for (const std::uint32_t i : s.free) names_.push_back(m.model->coordinates[i].name + suffix);
   }
@@ -176,28 +188,39 @@ Field<T> Flow::constraints_at(const State<T>& z, const Setting<T>& setting) cons
   return field;
 }
 
-// With K = [M, -A^T; A, 0]: K (a, lambda) = (f, -gamma), and along every direction d K (a', lambda') = (f' - M' a +
-// A'^T lambda, -gamma' - A' a). The elimination drops redundant rows of A.
+/// K = [M, -A^T; A, 0].
 template <class T>
-void Flow::differentiate(const ValueAndJacobian<T>& s, const State<T>& z, Field<T>& field) const {
-  const std::size_t size = n_ + m_, f0 = n_ * n_, A0 = f0 + n_, gamma0 = A0 + m_ * n_;
-  Matrix<T> K(size, size), right(size, 1), A(m_, n_);
+Matrix<T> Flow::matrix(const ValueAndJacobian<T>& s) const {
+  const std::size_t A0 = n_ * n_ + n_;
+  Matrix<T> K(n_ + m_, n_ + m_);
   for (std::size_t i = 0; i < n_; ++i) {
     for (std::size_t j = 0; j < n_; ++j) K(i, j) = s.value[i * n_ + j];
-    right(i, 0) = s.value[f0 + i];
   }
   for (std::size_t k = 0; k < m_; ++k) {
     for (std::size_t i = 0; i < n_; ++i) {
-      A(k, i) = K(n_ + k, i) = s.value[A0 + k * n_ + i];
+      K(n_ + k, i) = s.value[A0 + k * n_ + i];
       K(i, n_ + k) = -s.value[A0 + k * n_ + i];
     }
+  }
+  return K;
+}
+
+// K (a, lambda) = (f, -gamma), and along every direction d K (a', lambda') = (f' - M' a + A'^T lambda, -gamma' - A' a).
+// The elimination drops redundant rows of A.
+template <class T>
+void Flow::differentiate(const ValueAndJacobian<T>& s, const State<T>& z, Field<T>& field) const {
+  const std::size_t size = n_ + m_, f0 = n_ * n_, A0 = f0 + n_, gamma0 = A0 + m_ * n_;
+  const Matrix<T> K = matrix(s);
+  Matrix<T> right(size, 1), A(m_, n_);
+  for (std::size_t i = 0; i < n_; ++i) right(i, 0) = s.value[f0 + i];
+  for (std::size_t k = 0; k < m_; ++k) {
+    for (std::size_t i = 0; i < n_; ++i) A(k, i) = s.value[A0 + k * n_ + i];
     right(n_ + k, 0) = -s.value[gamma0 + k];
   }
   const Elimination<T> solver(K, singular<T>());
   require_domain(solver.rank() == n_ + Elimination<T>(A, singular<T>()).rank(), "the accelerations are not determined");
   if constexpr (std::is_same_v<T, Precise>) {
-    require_domain(solver.smallest_pivot() > tiny<Precise>(smallest_pivot_digits),
-                   "the coordinates are singular there, or too close to where they are");
+    require_domain(solver.smallest_pivot() > tiny<Precise>(smallest_pivot_digits), singular_coordinates);
   }
   const Matrix<T> y = solver.solve(right);
   std::vector<T> force;  // of the constraints, on the side of f
@@ -231,6 +254,38 @@ void Flow::differentiate(const ValueAndJacobian<T>& s, const State<T>& z, Field<
           field.inertia_force_jacobian(i, d) +=
               s.jacobian(i * n_ + j, d) * y(j, 0) + s.value[i * n_ + j] * jacobian(j, d);
       }
+    }
+  }
+}
+
+// A force along a coordinate gives it the acceleration P = e^T K^-1 e. With K^-1 e = (a, lambda), P' = -a^T M' a +
+// 2 lambda^T A' a. Near a pole of angles at a distance d it is 1/d^2, of which the rounding of the angle leaves no
+// digit.
+void Flow::require_regular(const State<Precise>& z, const Setting<Precise>& setting) const {
+  if (held_) return;
+  const ValueAndJacobian<Precise> s = value_and_jacobian(*tape_, z, setting);
+  const Elimination<Precise> solver(matrix(s), singular<Precise>());
+  const auto precise = [](double value) { return Precise(cln::cl_float(value, precise_format())); };
+  const std::size_t A0 = n_ * n_ + n_;
+  for (std::size_t along = 0; along < n_; ++along) {
+    Matrix<Precise> unit(n_ + m_, 1);
+    unit(along, 0) = Precise(1);
+    const Matrix<Precise> moved = solver.solve(unit);
+    // Constraints that hold the coordinate make P small beside the inverse of its inertia; singular ones make it large.
+    if (magnitude(Precise(s.value[along * n_ + along] * moved(along, 0))) < tiny<Precise>(6)) continue;
+    for (std::size_t d = 0; d < n_; ++d) {
+      Precise change(0);
+      for (std::size_t i = 0; i < n_; ++i) {
+        if (is_zero(moved(i, 0))) continue;
+        for (std::size_t j = 0; j < n_; ++j)
+          subtract(change, s.jacobian(i * n_ + j, d), Precise(moved(i, 0) * moved(j, 0)));
+        for (std::size_t k = 0; k < m_; ++k)
+          subtract(change, s.jacobian(A0 + k * n_ + i, d), Precise(-2 * moved(n_ + k, 0) * moved(i, 0)));
+      }
+      const Precise rounding =
+          precise(std::numeric_limits<double>::epsilon()) * std::max(precise(scales_[d]), magnitude(z[d]));
+      require_domain(magnitude(change) * rounding <= magnitude(moved(along, 0)) * precise(largest_rounding),
+                     singular_coordinates);
     }
   }
 }

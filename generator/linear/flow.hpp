@@ -61,6 +61,10 @@ class Flow {
   template <class T>
   Field<T> at(const State<T>& z, const Setting<T>& setting) const;
 
+  /// Throws std::domain_error where the coordinates are singular: where the rounding of a coordinate to binary64 leaves
+  /// fewer digits of the inertia along one than A is printed in. Contacts are not examined.
+  void require_regular(const State<Precise>& z, const Setting<Precise>& setting) const;
+
   /// The constraint part of the field alone.
   template <class T>
   Field<T> constraints_at(const State<T>& z, const Setting<T>& setting) const;
@@ -84,6 +88,8 @@ class Flow {
  private:
   template <class T>
   void differentiate(const ValueAndJacobian<T>& s, const State<T>& z, Field<T>& field) const;
+  template <class T>
+  Matrix<T> matrix(const ValueAndJacobian<T>& s) const;
   template <class T>
   void differentiate_held(const ValueAndJacobian<T>& s, const State<T>& z, Field<T>& field) const;
   template <class T>
@@ -111,6 +117,7 @@ class Flow {
   std::vector<std::string> names_;
   std::vector<Ref> entries_;
   std::vector<Symbol> symbols_;
+  std::vector<double> scales_;            // a change of each coordinate that is never small, or 0 if there is none
   std::vector<std::size_t> place_;        // index in z of a coordinate of the model
   std::vector<std::size_t> state_place_;  // index in z of a declared state of the model
   std::vector<Symbol> directions_;        // z, then inputs

@@ -85,6 +85,7 @@ Linearisation linearise(const Flow& flow, const State<Precise>& start, const Set
     if (magnitude(x) <= tiny<Precise>(std::min(100, result.known - 5))) x = number<Precise>(Precise(0));
   }
   const Chart& chart = result.symmetry.chart;
+  flow.require_regular(result.z, setting);
   result.field = flow.at(result.z, setting);
   result.tangent = tangent(result.field, chart);
   result.A = reduced_matrix(result.field, chart, result.tangent, result.known);

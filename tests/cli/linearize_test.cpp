@@ -219,3 +219,28 @@ TEST_CASE("linearize: a state at a singularity of its coordinates is refused, wi
   const Json found = document(folder, {"equilibria", "satellite.toml"});
   for (const Json& point : found["points"]) CHECK(std::abs(std::cos(point["values"]["be"].get<double>())) > 1e-6);
 }
+
+TEST_CASE("linearize, equilibria: angles written out in energies are refused at their pole, whatever the units") {
+  const Folder folder;
+  const auto pendulum = [&](const std::string& size, const std::string& start) {
+    folder.write("pendulum.toml", "format = 1\n[parameters]\nm = 3\nL = " + size +
+                                      "\n[coordinates]\nth = {}\nph = {}\n[energy]\nkinetic = \"m*L^2/2*(th_dot^2 + "
+                                      "cos(th)^2*ph_dot^2)\"\npotential = \"-9.81*m*L*sin(th)\"\n[scene.default]\nt = "
+                                      "[0, 1]\ninitial = { th = " +
+                                      start + ", ph = 0 }\n");
+  };
+  for (const char* size : {"1e-3", "1", "7e6"}) {
+    for (const char* start : {"\"pi/2\"", "1.5707963267948966", "1.570796326794"}) {
+      CAPTURE(size);
+      CAPTURE(start);
+      pendulum(size, start);
+      CHECK(contains(expect(2, folder, {"linearize", "pendulum.toml"}).err, "the coordinates are singular there"));
+    }
+    // The pole is left out by its name, and no eigenvalue is claimed for it. If all starts end there, it is an error.
+    const ChildResult found = eomgen::test::eomgen(folder, {"equilibria", "pendulum.toml"});
+    CHECK(contains(found.out + found.err, "the coordinates are singular there"));
+    CHECK_FALSE(contains(found.out, "eigenvalues"));
+    pendulum(size, "1.57");
+    document(folder, {"linearize", "pendulum.toml"});  // 8e-4 from the pole 13 digits are left
+  }
+}
