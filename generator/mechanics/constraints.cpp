@@ -46,9 +46,13 @@ bool solve_for_only_coordinate(const Mechanics& m, Ref psi, FixedCoordinate& res
   return true;
 }
 
-/// The constraints that fix the coordinates of psi: 'a', 'b' or 'c'.
+/// The constraints that fix the coordinates of psi, and those that these need: 'a', 'b' or 'c'.
 std::string constraints_that_fix(const Mechanics& m, Ref psi) {
-  const std::set<std::uint32_t> present = coordinates_in(*m.dag, psi);
+  std::set<std::uint32_t> present = coordinates_in(*m.dag, psi);
+  for (auto fixed = m.fixed.rbegin(); fixed != m.fixed.rend(); ++fixed) {  // each needs only those before it
+    if (present.contains(fixed->coordinate))
+      present.merge(coordinates_in(*m.dag, m.constraints[fixed->constraint].psi));
+  }
   std::string names, last;
   for (const FixedCoordinate& fixed : m.fixed) {
     if (!present.contains(fixed.coordinate)) continue;

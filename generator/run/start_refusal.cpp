@@ -60,6 +60,87 @@ std::optional<Broken> first_broken(const StartRows& rows, const std::vector<std:
   return std::nullopt;
 }
 
+/// Residuals and derivatives of all rows by the free unknowns, at the current values.
+struct Rows {
+  VectorXd residual;
+  MatrixXd A;
+};
+
+Rows rows_at(const StartRows& rows, std::uint8_t order, const std::vector<std::size_t>& free) {
+  Rows result;
+  MatrixXd all;
+  rows.linearise(order, result.residual, all);
+  result.A = MatrixXd(all.rows(), static_cast<Eigen::Index>(free.size()));
+  for (std::size_t i = 0; i < free.size(); ++i)
+    result.A.col(static_cast<Eigen::Index>(i)) = all.col(static_cast<Eigen::Index>(free[i]));
+  return result;
+}
+
+/// Moves the unknowns to a minimum of the squares of the residuals (K. Levenberg, Quarterly of Applied Mathematics 2
+/// (1944) 164-168), and returns the rows there. It leaves the start a little first, which may be a place of symmetry.
+Rows least_violation(StartRows& rows, const StartProblem& problem, std::uint8_t order,
+                     const std::vector<std::size_t>& free) {
+  constexpr int most_steps = 200;
+  constexpr double aside = 1e-2, settled = 1e-12;
+  const auto count = static_cast<Eigen::Index>(free.size());
+  const auto value = [&](std::size_t i) -> double& { return rows.value({problem.system.free[free[i]], order}); };
+  for (std::size_t i = 0; i < free.size(); ++i)
+    value(i) += aside * (1 + std::abs(value(i))) / static_cast<double>(i + 1);
+  Rows here = rows_at(rows, order, free);
+  double damping = 1;
+  for (int step = 0; step < most_steps && here.residual.allFinite() && here.A.allFinite(); ++step) {
+    MatrixXd J(here.A.rows() + count, count);
+    VectorXd r = VectorXd::Zero(J.rows());
+    r.head(here.A.rows()) = -here.residual;
+    J.topRows(here.A.rows()) = here.A;
+    J.bottomRows(count) = std::sqrt(damping) * MatrixXd::Identity(count, count);
+    const VectorXd move = numeric::least_squares(J, r).x;
+    double size = 0;
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      const double change = move(static_cast<Eigen::Index>(i));
+      size = std::max(size, std::abs(change) / (1 + std::abs(value(i))));
+      value(i) += change;
+    }
+    const Rows there = rows_at(rows, order, free);
+    if (there.residual.allFinite() && there.residual.norm() <= here.residual.norm()) {
+      here = there;
+      damping *= 0.1;
+    } else {
+      for (std::size_t i = 0; i < free.size(); ++i) value(i) -= move(static_cast<Eigen::Index>(i));
+      damping *= 10;
+    }
+    if (size < settled) break;
+  }
+  return here;
+}
+
+/// The constraints that contradict that of `row`: "'a'" or "'a', 'b'". At the least violation the gradients of those
+/// that are violated cancel, each times its violation: no unknown lessens one without another. Empty if there are none.
+/// Leaves the unknowns there.
+std::string contradicting(const StartProblem& problem, StartRows& rows, std::uint8_t order, Eigen::Index row,
+                          const std::vector<std::size_t>& free) {
+  // Near the least violation: Levenberg's method approaches it by 1/10 in each of its last steps.
+  constexpr double cancelled = 1e-6;
+  if (free.empty()) return {};
+  const Rows least = least_violation(rows, problem, order, free);
+  if (!least.residual.allFinite() || !least.A.allFinite()) return {};
+  VectorXd sizes(least.A.rows());
+  for (Eigen::Index k = 0; k < sizes.size(); ++k) sizes(k) = std::abs(least.residual(k)) * least.A.row(k).norm();
+  const double largest = sizes.maxCoeff();
+  if (!(sizes(row) > cancelled * largest) || std::abs(least.residual(row)) <= start_tolerance ||
+      (least.A.transpose() * least.residual).norm() > cancelled * largest)
+    return {};
+  const std::vector<std::size_t>& bound = rows.of_order(order);
+  std::string names;
+  for (Eigen::Index k = 0; k < sizes.size(); ++k) {
+    const std::size_t number = bound[static_cast<std::size_t>(k)];
+    if (k == row || number >= rows.first_angular_velocity_row() || sizes(k) <= cancelled * largest) continue;
+    const std::string& label = problem.mechanics.constraints[rows.constraint_of(number)].label;
+    names += (names.empty() ? "" : ", ") + model::quote(label);
+  }
+  return names;
+}
+
 [[noreturn]] void refuse_angular_velocity(const StartProblem& problem, const StartProblem::AngularVelocity& turn,
                                           double off) {
   throw Error("scene", problem.mechanics.model->where(turn.span),
@@ -71,7 +152,7 @@ std::optional<Broken> first_broken(const StartRows& rows, const std::vector<std:
 
 }  // namespace
 
-void refuse_start(const StartProblem& problem, const StartRows& rows, std::uint8_t order, std::size_t k,
+void refuse_start(const StartProblem& problem, StartRows& rows, std::uint8_t order, std::size_t k,
                   const std::vector<std::size_t>& free) {
   const system::EquationSystem& s = problem.system;
   VectorXd residual;
@@ -101,8 +182,13 @@ void refuse_start(const StartProblem& problem, const StartRows& rows, std::uint8
   }
   const bool alone =
       open.find(',') == std::string::npos;  // at most one unknown: no other one could satisfy the constraint
+  const std::string others = contradicting(problem, rows, order, row, free);
   const std::string remedy =
-      alone && !(open.empty() && !given.empty())
+      !others.empty()
+          ? fmt::format(
+                "it contradicts {}: no unknown lessens one without the other; leave out or change one of them{}",
+                others, given.empty() ? "" : ", or the values given")
+      : alone && !(open.empty() && !given.empty())
           ? fmt::format("{}: check its signs{}, or start the search elsewhere with guess = {{ .. }}",
                         open.empty()
                             ? "its gradient vanishes there: it has no real solution, or only ones where it has no force"

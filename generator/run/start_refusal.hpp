@@ -15,8 +15,8 @@ namespace eomgen::run {
 inline constexpr double start_rank_tolerance = 1e-10;
 
 /// Throws the Error for row k of this order, which no values of the unknowns satisfy; `free`: the unknowns, as indices
-/// of free coordinates.
-[[noreturn]] void refuse_start(const StartProblem& problem, const StartRows& rows, std::uint8_t order, std::size_t k,
+/// of free coordinates. The current values are those of the message, and are lost.
+[[noreturn]] void refuse_start(const StartProblem& problem, StartRows& rows, std::uint8_t order, std::size_t k,
                                const std::vector<std::size_t>& free);
 
 }  // namespace eomgen::run

@@ -128,7 +128,37 @@ TEST_CASE("a start without any consistent configuration is refused") {
   folder.write("loop.toml",
                loop("initial = { x1 = -1, y1 = 0, x1_dot = 0 }\n"));  // 4 from the other pivot; 3.5 at most
   const ChildResult result = expect(2, folder, {"run", "loop.toml"});
-  CHECK(contains(result.err, "the start breaks constraint"));
+  CHECK(contains(result.err, "the start breaks constraint 'right'"));
+  CHECK(contains(result.err, "it contradicts 'rod': no unknown lessens one without the other"));
+  CHECK_FALSE(contains(result.err, "'left'"));
+}
+
+TEST_CASE("a start that contradicting constraints refuse names all of them") {
+  const Folder folder;
+  const auto refusal = [&](const std::string& constraints, const std::string& scene) {
+    folder.write("model.toml",
+                 "format = 1\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { cartesian = [\"x\", \"y\"] }\n" +
+                     constraints + "[scene.default]\nt = [0, 1]\ninitial = { " + scene + " }\n");
+    return expect(2, folder, {"run", "model.toml"}).err;
+  };
+  const auto constraint = [](const std::string& name, const std::string& kind, const std::string& formula) {
+    return "[[constraint]]\nname = \"" + name + "\"\n" + kind + " = \"" + formula + "\"\n";
+  };
+  const std::string walls = constraint("a", "holonomic", "x - 1") + constraint("b", "holonomic", "x + y - 3") +
+                            constraint("c", "holonomic", "y - 1");
+  const std::string three = refusal(walls, "");
+  CHECK(contains(three, "they cannot hold together"));
+  for (const char* name : {"'a'", "'b'", "'c'"}) CHECK(contains(three, name));
+  // A line that the circle does not meet.
+  const std::string apart =
+      refusal(constraint("circle", "holonomic", "x^2 + y^2 - 1") + constraint("line", "holonomic", "x + y - 2"), "");
+  CHECK(contains(apart, "'circle'"));
+  CHECK(contains(apart, "'line'"));
+  const std::string rates = refusal(
+      constraint("slow", "velocity", "x_dot + y_dot - 1") + constraint("fast", "velocity", "2*x_dot + 2*y_dot - 5"),
+      "");
+  CHECK(contains(rates, "'slow'"));
+  CHECK(contains(rates, "'fast'"));
 }
 
 TEST_CASE("a start is found within the domain of its functions, and never far away where they are flat") {
