@@ -20,6 +20,7 @@ class ContactsReader : private SectionReader {
   void read_contact_point(Constraint& constraint, const Value& table, const std::map<std::string, TypedNode>& local);
   /// Adds the radius of a shape as "R".
   TypedNode contact_arm(const Value& table, std::map<std::string, TypedNode>& local);
+  void set_range_of_tilt(std::uint32_t frame, const Value& table, const std::map<std::string, TypedNode>& local);
   void draw_shapes(const BodyContact& contact, const Value& table, const std::map<std::string, TypedNode>& local);
   bool touches_body(const Value& on);
   /// The text of psi; nothing for the general psi of two points and a normal.

@@ -82,6 +82,26 @@ TypedNode ContactsReader::contact_arm(const Value& table, std::map<std::string, 
                         entry.value.span, arm);
 }
 
+// A disk that lies flat has no lowest point: its angle from the plane keeps the sign of the start, and sin of it is
+// taken as positive unless [coordinates] states a range.
+void ContactsReader::set_range_of_tilt(std::uint32_t frame, const Value& table,
+                                       const std::map<std::string, TypedNode>& local) {
+  const Value* shape = table.find("shape");
+  const Frame& body = model_.frames[frame];
+  const Node& normal = model_.arena[local.at("n").node];
+  const bool tilts = body.parent == 0 && (body.rotation == "313" || body.rotation == "323");
+  if (shape == nullptr || shape->entries[0].key != "disk" || !tilts || normal.op != Op::fixed_basis ||
+      normal.index != 2)
+    return;
+  const Node& angle = model_.arena[body.entries[1]];
+  if (angle.op != Op::coordinate || angle.order != 0) return;
+  Coordinate& tilt = model_.coordinates[angle.index];
+  if (tilt.lower != no_node || tilt.upper != no_node) return;
+  const Context context{"the range of an angle", 0, Shape::scalar, std::nullopt, ""};
+  tilt.lower = resolver_.text("0", {}, shape->span, context).node;
+  tilt.upper = resolver_.text("pi", {}, shape->span, context).node;
+}
+
 // Spheres and disks in contact are drawn as such, unless [draw] says otherwise.
 void ContactsReader::draw_shapes(const BodyContact& contact, const Value& table,
                                  const std::map<std::string, TypedNode>& local) {
@@ -168,6 +188,7 @@ void ContactsReader::read(Constraint& constraint, const Value& table, bool rolli
     local = plane_of_contact(on);
     name_motion(frame, "", table.span, local);
     local["p"] = contact_arm(table, local);
+    set_range_of_tilt(frame, table, local);
   }
   draw_shapes(*constraint.contact, table, local);
   tangent_of_contact(table, local);

@@ -345,21 +345,32 @@ TEST_CASE("textbooks: an entry of the mass matrix is written alike in both of it
                                  "(m3 - m2) x_ddot + (m2 + m3) y_ddot - (m2 - m3) g = 0"});
 }
 
-TEST_CASE("textbooks: a rolling disk by its shape has no quotient of |sin| and no term that vanishes") {
-  const mechanics::Mechanics m =
-      mechanics::build_mechanics(read("m = 1\nR = 1\ng = 9.81\n",
-                                      "[[body]]\nname = \"D\"\nmass = \"m\"\ninertia = { disk = \"R\" }\n"
-                                      "rotation = { euler = \"313\", angles = [\"phi\", \"theta\", \"psi\"] }\n"
-                                      "position = { cartesian = [\"x\", \"y\", \"z\"] }\n" +
-                                          weight_in_space +
-                                          "[[constraint]]\nname = \"rolling\"\nrolling = { body = \"D\", on = "
-                                          "\"ground\", shape = { disk = \"R\" } }\n"));
-  const auto items = print::render(m, reading::derive_display_form(m, system::Approach::one), {"constraints"});
-  const std::vector<std::string> lines = texts(items, "constraints");
+TEST_CASE(
+    "textbooks: a rolling disk by its shape reads as by its point, without |sin|, unless a range says otherwise") {
+  const auto lines_of = [](const std::string& contact, const std::string& range) {
+    const mechanics::Mechanics m = mechanics::build_mechanics(
+        read("m = 1\nR = 1\ng = 9.81\n", range +
+                                             "[[body]]\nname = \"D\"\nmass = \"m\"\ninertia = { disk = \"R\" }\n"
+                                             "rotation = { euler = \"313\", angles = [\"phi\", \"theta\", \"psi\"] }\n"
+                                             "position = { cartesian = [\"x\", \"y\", \"z\"] }\n" +
+                                             weight_in_space +
+                                             "[[constraint]]\nname = \"rolling\"\nrolling = { body = \"D\", on = "
+                                             "\"ground\", " +
+                                             contact + " }\n"));
+    const reading::DisplayForm form = reading::derive_display_form(m, system::Approach::one);
+    std::vector<std::string> lines = texts(print::render(m, form, {"constraints"}), "constraints");
+    for (const std::string& line : texts(print::render(m, form, {"equations"}), "equations")) lines.push_back(line);
+    return lines;
+  };
+  const std::string shape = "shape = { disk = \"R\" }";
+  const std::vector<std::string> lines = lines_of(shape, "");
   CAPTURE(in_lines(lines));
-  CHECK(contains(lines, "Psi_3 = z - R abs(sin(theta)) = 0"));
-  CHECK(contains(lines, "z_dot - R cos(theta) sign(sin(theta)) theta_dot = 0"));
-  for (const std::string& line : lines) CHECK(line.find("/abs") == std::string::npos);
+  CHECK(contains(lines, "Psi_3 = z - R sin(theta) = 0"));
+  CHECK(lines == lines_of("at = \"-R*D.e2''\"", ""));
+  const std::vector<std::string> wide = lines_of(shape, "[coordinates]\ntheta = { range = [\"-pi\", \"pi\"] }\n");
+  CHECK(contains(wide, "Psi_3 = z - R abs(sin(theta)) = 0"));
+  CHECK(contains(wide, "-R cos(theta) sign(sin(theta)) theta_dot + z_dot = 0"));
+  for (const std::string& line : wide) CHECK(line.find("/abs") == std::string::npos);
 }
 
 TEST_CASE("textbooks: a root whose value a constraint gives is written with that value") {
