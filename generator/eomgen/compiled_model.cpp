@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <eom/modes/contacts.hpp>
 #include <limits>
+#include <optional>
 
 #include "derive/frames.hpp"
 #include "derive/inertias.hpp"
@@ -37,6 +38,8 @@ std::vector<Quantity> quantities(const std::vector<std::string>& names, const sy
   }
   return result;
 }
+
+constexpr std::size_t fewest_lanes = 16;  // states of a batch for which shared arguments are worth their copies
 
 pipeline::SimulationRequest request_of(std::shared_ptr<const model::Model> model, const CompileOptions& options) {
   pipeline::SimulationRequest request;
@@ -255,18 +258,34 @@ int CompiledModel::rhs_batch(std::size_t count, const double* t, const double* x
   const double* const p = parameters != nullptr ? parameters : s.values.parameters.data();
   const bool varying = inputs == nullptr && s.constant_inputs.empty() && !s.inputs.empty();
   const double* const u = inputs != nullptr ? inputs : s.constant_inputs.data();
+  std::optional<LaneBatch> lanes;
+  if (const jit::LaneCode* together = varying || count < fewest_lanes ? nullptr : s.lanes.find(s.run, w != nullptr))
+    lanes.emplace(*together, N, p, s.parameters.size(), w, code.prepared, u, s.inputs.size());
   int first = 0;
-  for (std::size_t k = 0; k < count; ++k) {
+  const auto alone = [&](std::size_t k) {
     const double* const row = x + k * N;
     double* const to = dx + k * N;
     const int result = varying        ? rhs({t[k], row, parameters, nullptr, 0}, to)
                        : w != nullptr ? code.rhs_prepared(t[k], row, p, w, u, 0, to)
                                       : code.rhs(t[k], row, p, u, 0, to);
     if (codes != nullptr) codes[k] = result;
-    if (result == 0) continue;
+    if (result == 0) return;
     if (first == 0) first = result;
     std::fill(to, to + N, std::numeric_limits<double>::quiet_NaN());
+  };
+  std::size_t done = 0;
+  while (lanes && count - done >= jit::lane_width) {
+    const std::size_t groups = std::min((count - done) / jit::lane_width, LaneBatch::most_groups);
+    const std::uint32_t failed = lanes->evaluate(groups, t + done, x + done * N, dx + done * N);
+    for (std::size_t g = 0; g < groups; ++g, done += jit::lane_width) {
+      if ((failed >> g & 1u) == 0) {
+        if (codes != nullptr) std::fill_n(codes + done, jit::lane_width, 0);
+        continue;
+      }
+      for (std::size_t s = 0; s < jit::lane_width; ++s) alone(done + s);
+    }
   }
+  for (; done < count; ++done) alone(done);
   return first;
 }
 

@@ -7,6 +7,7 @@
 
 #include "eomgen/compiled_model.hpp"
 #include "eomgen/prepared_runs.hpp"
+#include "eomgen/rhs_lanes.hpp"
 
 namespace eomgen {
 
@@ -32,6 +33,7 @@ struct CompiledModel::State {
   std::vector<double> constant_inputs;  // empty if some input varies
   std::vector<double> prepared;         // of the scene's parameters
   bool is_prepared = false;             // `prepared` is valid
+  RhsLanes lanes;
 };
 
 }  // namespace eomgen

@@ -13,6 +13,8 @@ namespace eomgen::jit {
 /// angles[count .. 2 count) = sines of the `count` angles, angles[2 count .. 3 count) = cosines.
 using SincosGroup = void (*)(double* angles, std::size_t count);
 SincosGroup sincos_group();
+/// The same bits with vectors of four angles, for processors with AVX2. `count` is a multiple of 4.
+SincosGroup wide_sincos_group();
 
 /// The address of a function of the C library.
 const void* library_function(Library function);

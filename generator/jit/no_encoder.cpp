@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Builds for other processors, or without asmjit.
 #include "jit/encode.hpp"
+#include "jit/lane_encode.hpp"
 
 namespace eomgen::jit {
 
@@ -16,5 +17,8 @@ FunctionNumber Encoder::with_context(const void*, const void*, std::size_t) { re
 Encoder::Finished Encoder::finish() { return {}; }
 
 const char* encoder_refusal() { return EOMGEN_NO_ENCODER; }
+
+bool has_lanes() { return false; }
+std::unique_ptr<ExecutableMemory> encode_lanes(const FunctionSteps&, const double*) { return nullptr; }
 
 }  // namespace eomgen::jit

@@ -11,6 +11,7 @@
 #include <random>
 
 #include "emit/examples.hpp"
+#include "jit/lanes.hpp"
 #include "jit/random_programs.hpp"
 
 using namespace eomgen;
@@ -60,6 +61,46 @@ std::size_t entries_of(const program::Program& program) {
   return most + 1;
 }
 
+/// Four states at once against each of them alone: the same bits, and another code if one of them has one.
+void compare_lanes(const Example& e, const jit::MachineCode& direct, const std::vector<double>& x,
+                   const abi::CallArguments& given) {
+  if (!jit::has_lanes()) return;
+  std::vector<double> inputs;
+  for (const emit::Quantity& input : e.context.inputs) inputs.push_back(input.value);
+  const std::size_t states = e.program.state_count();
+  const auto four = [](const double* values, std::size_t count) {
+    std::vector<double> list;
+    for (std::size_t k = 0; k < count; ++k) list.insert(list.end(), jit::lane_width, values[k]);
+    return list;
+  };
+  const std::vector<double> p = four(given.p, e.context.parameters.size()),
+                            w = four(given.w, e.program.prepared_count()),
+                            u = given.u != nullptr ? four(given.u, inputs.size()) : four(inputs.data(), inputs.size());
+  std::vector<double> t(jit::lane_width), moved(4 * states), dx(4 * states), alone(states);
+  for (const program::Function& function : e.program.functions) {
+    if (function.name != "rhs" && function.name != "rhs_prepared") continue;
+    const jit::LaneCode lanes(e.program, function, inputs);
+    int worst = 0;
+    for (std::size_t s = 0; s < 4; ++s) {
+      t[s] = given.t + 0.1 * static_cast<double>(s);
+      for (std::size_t k = 0; k < states; ++k) moved[4 * k + s] = x[k] * (1 + 0.2 * static_cast<double>(s));
+    }
+    const int together = lanes({t.data(), moved.data(), p.data(), w.data(), u.data(), dx.data()});
+    std::vector<double> own(states);
+    for (std::size_t s = 0; s < 4; ++s) {
+      CAPTURE(s);
+      for (std::size_t k = 0; k < states; ++k) own[k] = moved[4 * k + s];
+      abi::CallArguments one = given;
+      one.t = t[s], one.x = own.data(), one.mode = nullptr;
+      one.results[0] = alone.data();
+      const int code = direct.call(function.name, one);
+      worst = std::max(worst, code);
+      for (std::size_t k = 0; together == 0 && k < states; ++k) REQUIRE(same_bits(dx[4 * k + s], alone[k]));
+    }
+    REQUIRE((together == 0) == (worst == 0));
+  }
+}
+
 /// Calls every function at random arguments in random modes. Returns the number of calls with code 0. `may_leave_out`:
 /// some calls leave the inputs out. A compiler may compute functions of default inputs beforehand, and round them once.
 int compare(const Example& e, std::uint64_t seed, int points, bool may_leave_out = false) {
@@ -96,6 +137,7 @@ int compare(const Example& e, std::uint64_t seed, int points, bool may_leave_out
     given.w = w.data();
     given.u = may_leave_out && point % 3 == 0 ? nullptr : u.data();
     given.mode = point % 2 == 0 ? nullptr : mode.data();
+    compare_lanes(e, direct, x, given);
     for (const abi::Function& function : abi::functions()) {
       CHECK(c.model.has(function.name) == direct.has(function.name));
       if (!c.model.has(function.name) || function.name == "prepare") continue;

@@ -231,6 +231,23 @@ TEST_CASE("library: a singular state in a batch has its code, and the other stat
   CHECK(dx[10] == doctest::Approx(4 * std::sin(2.0) * std::cos(2.0) + 9.81 / 2 * std::sin(2.0)).epsilon(1e-14));
 }
 
+TEST_CASE("library: many states have the bits of each alone, also beside a singular one") {
+  const CompiledModel f = Model::from(test::pendulum(), "pendulum").compile();
+  constexpr std::size_t count = 23;  // no multiple of the lanes
+  std::vector<double> t(count), x(4 * count), dx(4 * count), alone(4), p(f.parameters().size(), 1.5);
+  std::vector<int> codes(count);
+  for (std::size_t k = 0; k < x.size(); ++k) x[k] = k / 4 == 9 ? 0 : std::sin(1 + static_cast<double>(k * k));
+  for (const double* parameters : {static_cast<const double*>(nullptr), static_cast<const double*>(p.data())}) {
+    CHECK(f.rhs_batch(count, t.data(), x.data(), parameters, nullptr, dx.data(), codes.data()) == codes[9]);
+    for (std::size_t k = 0; k < count; ++k) {
+      CAPTURE(k);
+      CHECK(codes[k] == f.rhs({.t = t[k], .x = &x[4 * k], .parameters = parameters}, alone.data()));
+      CHECK((codes[k] != 0) == (k == 9));
+      for (std::size_t i = 0; i < 4; ++i) CHECK((k == 9 ? std::isnan(dx[4 * k + i]) : dx[4 * k + i] == alone[i]));
+    }
+  }
+}
+
 TEST_CASE("library: a compiled model lives on without its model") {
   std::optional<CompiledModel> f;
   {
