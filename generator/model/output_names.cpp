@@ -26,7 +26,7 @@ void ScenesReader::refuse_shadowed_outputs() {
   for (const Coordinate& c : model_.coordinates)
     derived("momentum." + c.name, fmt::format("the generalised momentum of '{}'", c.name));
   for (const Constraint& c : model_.constraints) {
-    for (const char* what : {"reaction", "integral", "friction", "slip", "mode"})
+    for (const char* what : {"reaction", "integral", "friction", "slip", "mode", "gap"})
       derived(fmt::format("{}.{}", what, c.name), fmt::format("an output of '{}'", c.name));
   }
   for (const Force& f : model_.forces) {

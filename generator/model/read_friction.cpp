@@ -112,7 +112,9 @@ DryFriction FrictionReader::read_dry_friction(const Value& table, const std::str
 }
 
 bool FrictionReader::is_output(const std::vector<std::string>& parts) {
-  if (parts.size() < 2 || parts.size() > 3 || (parts[0] != "friction" && parts[0] != "mode" && parts[0] != "slip"))
+  constexpr std::string_view outputs[] = {"friction", "slip", "mode", "gap"};
+  if (parts.size() < 2 || parts.size() > 3 ||
+      std::find(std::begin(outputs), std::end(outputs), parts[0]) == std::end(outputs))
     return false;
   const Symbol* symbol = scope_.find(parts[1]);
   if (symbol == nullptr) return false;
@@ -120,6 +122,7 @@ bool FrictionReader::is_output(const std::vector<std::string>& parts) {
   const bool constraint = symbol->kind == SymbolKind::constraint;
   const bool rough = constraint && model_.constraints[symbol->index].friction.has_value();
   const bool left = constraint && model_.constraints[symbol->index].unilateral;
+  if (parts[0] == "gap") return parts.size() == 2 && left;
   if (parts[0] == "mode") return parts.size() == 2 && (dry || rough || left);
   if (parts[0] == "slip")
     return (dry || rough) && (parts.size() == 2 || (rough && (parts[2] == "1" || parts[2] == "2")));

@@ -40,6 +40,7 @@ enum class OutputKind : std::uint8_t {
   // of a contact; part: axis of the friction, tangent of the slip
   friction,
   slip,
+  gap,  // of one that can open
   mode,
   definition,  // of the model
   integral,    // integral of constraints on velocities: Mechanics::integrals

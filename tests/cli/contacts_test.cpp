@@ -209,6 +209,33 @@ TEST_CASE("impacts: friction of a point that slides acts during restitution too,
   }
 }
 
+TEST_CASE("contacts: gap.NAME is the value of a unilateral constraint, whatever the number of contacts") {
+  const Folder folder;
+  // One particle above a floor, or beside four walls; it falls from 1.25 and rests from 0.5 s on.
+  const auto lines = [&](const std::string& walls, const std::string& outputs) {
+    folder.write("model.toml",
+                 "format = 1\n[[particle]]\nname = \"P\"\nmass = 2\nposition = { cartesian = [\"x\", \"y\"] }\n"
+                 "[[force]]\ngravity = \"-9.81*E2\"\n[[constraint]]\nname = \"floor\"\nholonomic = \"y - 0.1\"\nholds "
+                 "= \"unilateral\"\nfriction = { static = 0.2, dynamic = 0.2 }\n" +
+                     walls + "[scene.default]\nt = [0, 1]\ninitial = { x_dot = 0.1, y = 1.35 }\n");
+    expect(0, folder, {"run", "model.toml", "--output", outputs, "--out", "a.csv"});
+    return read_table(folder.read("a.csv"));
+  };
+  std::string walls;
+  for (const char* wall : {"x + 3", "5 - x", "8 - y"}) {
+    walls += "[[constraint]]\nname = \"wall" + std::to_string(walls.size()) + "\"\nholonomic = \"" + wall +
+             "\"\nholds = \"unilateral\"\n";
+  }
+  for (const std::string& beside : {std::string(), walls}) {
+    const Table table = lines(beside, "gap.floor,y");
+    for (std::size_t k = 0; k < table.rows.size(); ++k)
+      CHECK(table.at(k, "gap.floor") == doctest::Approx(table.at(k, "y") - 0.1).epsilon(1e-12));
+    CHECK(table.at(0, "gap.floor") == doctest::Approx(1.25));
+    CHECK(std::abs(table.at(table.rows.size() - 1, "gap.floor")) < 1e-12);
+  }
+  CHECK(contains(expect(2, folder, {"run", "model.toml", "--output", "gap.nothing"}).err, "gap.floor"));
+}
+
 TEST_CASE("impacts: Stronge's law is refused for slip in two directions, and for simultaneous impacts") {
   refused(falling_rod("law = \"stronge\"\norder = \"simultaneous\"", 0.2, 0.5), "one contact at a time");
   std::string ball = falling("sphere = \"R\"");
