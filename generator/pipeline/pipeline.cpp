@@ -12,6 +12,7 @@
 #include "derive/frames.hpp"
 #include "derive/inertias.hpp"
 #include "derive/trees/body_residual.hpp"
+#include "derive/trees/tensions.hpp"
 #include "emit/self_test.hpp"
 #include "error.hpp"
 #include "model/names.hpp"
@@ -221,6 +222,7 @@ program::Program make_program(DerivedModel& derived, const program::Request& req
   complete.parameters = derived.model.parameters.size();
   complete.inputs = derived.model.inputs.size();
   complete.residual = [&derived] { return derive::body_residual(derived.mechanics); };
+  complete.forces = [&derived] { return derive::tree_tensions(derived.mechanics); };
   if (!complete.frames) complete.frames = [&derived] { return derive::frames(derived.mechanics); };
   if (!complete.inertias) complete.inertias = [&derived] { return derive::inertias(derived.mechanics); };
   program::Program program = program::build_program(derived.candidates, complete);

@@ -95,6 +95,10 @@ AbiFunctions::AbiFunctions(system::EquationSystem system, const std::map<std::ui
     qddot_symbol_.push_back(dag.symbol(qddot));
     solution[qddot] = qddot_[i];
   }
+  if (has_forces()) {
+    const system::InternalForces& forces = *system_.solution->forces;
+    for (std::size_t k = 0; k < forces.symbols.size(); ++k) solution[forces.symbols[k]] = forces.values[k];
+  }
   for (std::size_t k = 0; k < m_; ++k) {
     const Symbol lambda{SymbolKind::multiplier, system_.active[k], 0};
     lambda_symbol_.push_back(dag.symbol(lambda));
@@ -147,6 +151,7 @@ void AbiFunctions::add_solution(FunctionExpressions& function) {
     const std::vector<Pivot> more = solve_->pivots();
     pivots.insert(pivots.end(), more.begin(), more.end());
   }
+  if (force_solver_) pivots.insert(pivots.end(), force_solver_->pivots().begin(), force_solver_->pivots().end());
   for (const Pivot& pivot : pivots) {
     if (std::binary_search(needed.begin(), needed.end(), pivot.pivot)) function.pivots.push_back(pivot);
   }
@@ -184,6 +189,11 @@ const symbolic::VanishingNorms& AbiFunctions::norms() {
   for (const auto* const part : {&lambda_, &system_.f, &system_.A, &system_.gamma})
     roots.insert(roots.end(), part->begin(), part->end());
   if (system_.residual) roots.insert(roots.end(), system_.residual->applied.begin(), system_.residual->applied.end());
+  if (has_forces()) {
+    const system::InternalForces& forces = *system_.solution->forces;
+    for (const auto* const part : {&forces.matrix, &forces.side, &forces.qddot})
+      roots.insert(roots.end(), part->begin(), part->end());
+  }
   for (const system::FirstOrderState& state : system_.states) roots.push_back(state.rate);
   norms_ = symbolic::vanishing_norms(*system_.dag, roots);
   // A division in an output says nothing about the equations.
@@ -192,81 +202,9 @@ const symbolic::VanishingNorms& AbiFunctions::norms() {
   return *norms_;
 }
 
-// d(qddot)/ds by differentiating the equations of motion, not their solution. With qddot and lambda constant,
-//   M dqddot = df + dA^T lambda - dM qddot + A^T dlambda,   A dqddot = -(dgamma + dA qddot).
 std::vector<Ref> AbiFunctions::derivative_column(Symbol along) {
   symbolic::Derivation d = symbolic::partial_derivative(*system_.dag, along, norms());
   return differentiated(d, along);
-}
-
-std::vector<Ref> AbiFunctions::differentiated(symbolic::Derivation& d, std::optional<Symbol> along) {
-  std::vector<Ref> result;
-  // The solution is differentiated in two cases: the friction law is nonlinear, and a solution by the formulation
-  // itself satisfies M, f, A and gamma only on the constraints (Euler parameters of unit length).
-  if (differentiates_solution()) {
-    for (const Ref a : qddot_) result.push_back(d(a));
-  } else if (std::optional<std::vector<Ref>> solved = along ? solved_column(d, *along) : std::nullopt) {
-    result = *std::move(solved);
-  } else {
-    result = differentiated_equations(d, along).first;
-  }
-  for (const system::FirstOrderState& state : system_.states) result.push_back(d(state.rate));
-  return result;
-}
-
-Unknowns AbiFunctions::differentiated_equations(symbolic::Derivation& d, std::optional<Symbol> along) {
-  Dag& dag = *system_.dag;
-  std::vector<Ref> r, c;
-  for (std::size_t i = 0; i < n_; ++i) {
-    Ref sum = system_.residual ? residual_slope(d, along, i) : d(system_.f[i]);
-    for (std::size_t k = 0; k < m_; ++k) sum = dag.add(sum, dag.mul(d(system_.A[k * n_ + i]), lambda_[k]));
-    for (std::size_t j = 0; j < n_ && !system_.residual; ++j)
-      sum = dag.sub(sum, dag.mul(d(system_.M[i * n_ + j]), qddot_[j]));
-    r.push_back(sum);
-  }
-  for (std::size_t k = 0; k < m_; ++k) {
-    Ref sum = d(system_.gamma[k]);
-    for (std::size_t j = 0; j < n_; ++j) sum = dag.add(sum, dag.mul(d(system_.A[k * n_ + j]), qddot_[j]));
-    c.push_back(dag.neg(sum));
-  }
-  return solve()(std::move(r), c);
-}
-
-// -d(M qddot - f)_i/ds at fixed qddot.
-Ref AbiFunctions::residual_slope(symbolic::Derivation& d, std::optional<Symbol> along, std::size_t i) {
-  Dag& dag = *system_.dag;
-  const system::Residual& residual = *system_.residual;
-  Ref inertia;
-  const bool by_coordinate = along && along->kind == SymbolKind::coordinate;
-  const auto coordinate =
-      by_coordinate ? std::find(system_.free.begin(), system_.free.end(), along->index) : system_.free.end();
-  if (coordinate != system_.free.end()) {
-    const auto j = static_cast<std::size_t>(coordinate - system_.free.begin());
-    inertia = (along->order == 0 ? residual.by_q : residual.by_qdot)[i * n_ + j];
-  } else {
-    inertia = d(residual.inertia[i]);
-  }
-  return dag.sub(d(residual.applied[i]), (*solution_)(inertia));
-}
-
-/// The column of the coordinates that the formulation solves itself: qddot_by_q + M^-1 dQ.
-std::optional<std::vector<Ref>> AbiFunctions::solved_column(symbolic::Derivation& d, Symbol along) {
-  if (!system_.residual || m_ > 0) return std::nullopt;
-  Dag& dag = *system_.dag;
-  const system::Residual& residual = *system_.residual;
-  const auto coordinate = std::find(system_.free.begin(), system_.free.end(), along.index);
-  if (residual.qddot_by_q.empty() || along.kind != SymbolKind::coordinate || coordinate == system_.free.end())
-    return std::nullopt;
-  const auto j = static_cast<std::size_t>(coordinate - system_.free.begin());
-  std::vector<Ref> column;
-  for (std::size_t i = 0; i < n_; ++i)
-    column.push_back((*solution_)((along.order == 0 ? residual.qddot_by_q : residual.qddot_by_qdot)[i * n_ + j]));
-  for (std::size_t k = 0; k < n_; ++k) {
-    const Ref force = d(residual.applied[k]);
-    for (std::size_t i = 0; i < n_ && !dag.is_zero(force); ++i)
-      column[i] = dag.add(column[i], dag.mul(residual.M_inverse[i * n_ + k], force));
-  }
-  return column;
 }
 
 FunctionExpressions AbiFunctions::jac() {

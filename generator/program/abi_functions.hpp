@@ -13,6 +13,7 @@
 #include "program/kinks.hpp"
 #include "program/linear_solver.hpp"
 #include "program/program.hpp"
+#include "program/rooted_solver.hpp"
 #include "symbolic/calculus.hpp"
 
 namespace eomgen::program {
@@ -77,6 +78,8 @@ class AbiFunctions {
                                      std::size_t count, Sweep sweep);
   /// Whether the system has all these outputs.
   bool has_outputs(const std::vector<std::string>& names) const;
+  /// Whether derivatives by columns are made with the internal forces of a tree.
+  bool has_forces() const { return m_ == 0 && system_.solution && system_.solution->forces; }
   /// M v - f without friction of contacts.
   FunctionExpressions inverse();
   FunctionExpressions coriolis();
@@ -108,6 +111,8 @@ class AbiFunctions {
   std::vector<Ref> derivative_column(symbolic::Symbol along);
   /// d(qddot, rates of states) for the seeds of `d`; `along`: the symbol, if there is one only.
   std::vector<Ref> differentiated(symbolic::Derivation& d, std::optional<symbolic::Symbol> along);
+  /// d(qddot) by the internal forces of a tree.
+  std::vector<Ref> differentiated_forces(symbolic::Derivation& d);
   /// d(qddot, lambda) by the equations at fixed qddot and lambda.
   Unknowns differentiated_equations(symbolic::Derivation& d, std::optional<symbolic::Symbol> along);
   /// f + A^T lambda - M qddot, then gamma + A qddot, with qddot and lambda as symbols.
@@ -146,7 +151,9 @@ class AbiFunctions {
 
   Ties ties_ = Ties::ascending;
   std::unique_ptr<LinearSolver> solve_;
-  std::optional<symbolic::VanishingNorms> norms_;  // found on first use
+  std::unique_ptr<RootedSolver> force_solver_;             // created on first use
+  std::vector<std::map<std::size_t, Ref>> force_weights_;  // d(qddot)/d(internal forces), by rows
+  std::optional<symbolic::VanishingNorms> norms_;          // found on first use
   std::vector<Ref> qddot_, lambda_;
   std::unique_ptr<symbolic::Substitution> solution_;
   FrictionSolution friction_;  // if there are contacts

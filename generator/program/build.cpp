@@ -192,6 +192,19 @@ std::vector<std::unique_ptr<AbiFunctions>> with_residual(const std::vector<syste
   return result;
 }
 
+/// The first solved system of a tree, with the internal forces for derivatives. Empty if there is none.
+std::unique_ptr<AbiFunctions> with_forces(const std::vector<system::EquationSystem>& systems, const Request& request) {
+  if (!request.forces || !systems.front().contacts.empty()) return nullptr;
+  const auto solved = std::find_if(systems.begin(), systems.end(), [](const system::EquationSystem& system) {
+    return system.formulation == "articulated" && system.solution && system.active.empty();
+  });
+  if (solved == systems.end()) return nullptr;
+  system::EquationSystem copy = *solved;
+  copy.solution->forces = request.forces();
+  if (!copy.solution->forces) return nullptr;
+  return std::make_unique<AbiFunctions>(std::move(copy), request.fix, Ties::ascending, holds_branches(request));
+}
+
 /// How derivatives are taken.
 struct Way {
   Differentiate by = Differentiate::equations;
@@ -259,6 +272,9 @@ bool has_other_ways(const std::string& name) {
          is_value_jacobian(name);
 }
 
+/// Whether a derivative may be made with the internal forces of a tree. The others use M and f, or the solution.
+bool uses_forces(const std::string& name) { return name.starts_with("jac") || is_value_jacobian(name); }
+
 /// The ways to a derivative. A Jacobian matrix with far fewer rows than columns is made by rows, one with fewer columns
 /// by columns; between them both are compared.
 std::vector<Way> ways_to(const std::string& name, const AbiFunctions& functions, const Request& request) {
@@ -297,6 +313,7 @@ class Derivatives {
   Function cheapest(const std::string& name) {
     if (ways_.empty()) {
       others_ = with_residual(systems_, request_);
+      if (auto by_forces = with_forces(systems_, request_)) others_.push_back(std::move(by_forces));
       ways_.push_back(&chosen_);
       for (const std::unique_ptr<AbiFunctions>& other : others_) ways_.push_back(other.get());
     }
@@ -309,6 +326,7 @@ class Derivatives {
       costs.push_back(count_operations(tested(flatten(raw.back(), false))).cost());
     };
     for (AbiFunctions* functions : ways_) {
+      if (functions->has_forces() && !uses_forces(name)) continue;
       for (const Way& way : ways_to(name, *functions, request_)) add(*functions, way);
     }
     const std::size_t least = *std::min_element(costs.begin(), costs.end());

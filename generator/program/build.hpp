@@ -23,6 +23,8 @@ struct Request {
   std::size_t parameters = 0, inputs = 0;           // count in the model, for jac_p, jac_u; 0: those in the equations
   /// Derives the residual of trees, for derivatives by it. Empty: derivatives from M and f only.
   std::function<std::optional<system::Residual>()> residual = {};
+  /// Derives the forces between links that `articulated` solves for, for derivatives by them. Empty: the same.
+  std::function<std::optional<system::InternalForces>()> forces = {};
   /// Derives the motions of bodies, particles and points, for the function `frames`. Empty: it has no frames.
   std::function<std::vector<system::Frame>()> frames = {};
   /// Derives the masses and inertias of bodies and particles. Empty: `regressor` and `momentum` have none.

@@ -90,7 +90,8 @@ std::vector<Ref> AbiFunctions::value_slopes_by_columns(const std::vector<Ref>& v
       for (const Ref root : roots) slopes.push_back(d(root));
       continue;
     }
-    const std::optional<std::vector<Ref>> column = solved_column(d, symbol);
+    const std::optional<std::vector<Ref>> column =
+        has_forces() ? std::optional(differentiated_forces(d)) : solved_column(d, symbol);
     const Unknowns unknowns = column ? Unknowns{*column, {}} : differentiated_equations(d, symbol);
     std::map<Symbol, Ref> seeds{{symbol, dag.one()}};
     for (std::size_t i = 0; i < n_; ++i) seeds[{SymbolKind::coordinate, system_.free[i], 2}] = unknowns.first[i];

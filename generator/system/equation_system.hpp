@@ -47,11 +47,21 @@ struct QuasiVelocityEquations {
   std::vector<Ref> M, f;                      // n x n, n
 };
 
+/// The forces between the links of a tree, for which its formulation solves first: matrix forces = side. They are
+/// symbols of their own in the accelerations only.
+struct InternalForces {
+  std::vector<symbolic::Symbol> symbols;  // k
+  std::vector<Ref> matrix, side;          // k x k row-major, symmetric and positive definite; k
+  std::vector<Ref> values;                // k: the solution
+  std::vector<Ref> qddot;                 // n, linear in the symbols
+};
+
 /// The solution, if the formulation solves the equations itself.
 struct Solution {
   std::vector<Ref> qddot;   // n, without accelerations and multipliers
   std::vector<Ref> lambda;  // m
   std::vector<symbolic::Pivot> pivots;
+  std::optional<InternalForces> forces = {};  // for derivatives
 };
 
 /// The equations as forces that vanish, inertia - applied = A^T lambda, with the accelerations as symbols of their own

@@ -37,6 +37,11 @@ void for_each_expression(System& system, Visit&& visit) {
       visit(pivot.pivot, ExpressionRole::motion);
       visit(pivot.scale, ExpressionRole::motion);
     }
+    if (system.solution->forces) {
+      auto& forces = *system.solution->forces;
+      for (auto* list : {&forces.matrix, &forces.side, &forces.values, &forces.qddot})
+        all(*list, ExpressionRole::motion);
+    }
   }
   if (system.residual) {
     auto& residual = *system.residual;

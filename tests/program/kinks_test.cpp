@@ -174,6 +174,7 @@ TEST_CASE("system: for_each_expression visits every expression once") {
   s.states = {{{SymbolKind::integral, 0, 0}, next()}};
   s.quasi = system::QuasiVelocityEquations{{}, some(), some()};
   s.solution = system::Solution{some(), some(), {{next(), next()}}};
+  s.solution->forces = system::InternalForces{{}, some(), some(), some(), some()};
   system::Contact contact;
   contact.gram = some(), contact.slip = some(), contact.slip_rate = some();
   contact.normal = next(), contact.static_coefficient = next(), contact.dynamic_coefficient = next();

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <map>
+#include <tuple>
+#include <utility>
 
 #include "derive/equations.hpp"
 #include "symbolic/polynomial.hpp"
@@ -10,7 +12,8 @@
 namespace eomgen::derive {
 namespace {
 
-constexpr std::size_t small = 40;  // terms: expressions within one link have few
+constexpr std::uint32_t first_tension = 1u << 24;  // index of the symbols of tensions: beyond those of theta
+constexpr std::size_t small = 40;                  // terms: expressions within one link have few
 
 /// Expands short expressions, with sin^2 + cos^2 = 1; leaves others unchanged.
 class Tidy {
@@ -115,6 +118,32 @@ class Tensions {
 
   system::Solution solve() {
     system::Solution result{std::vector<Ref>(tree_.J.size()), {}, {}};
+    auto [S, b] = equations();
+    symbolic::Factorisation factors(dag_, std::move(S), b.size(), symbolic::Ties::descending);
+    tension_ = factors.backward(factors.forward(b));
+    result.pivots = factors.pivots();
+    for (std::size_t k = 0; k < links_.links.size(); ++k) second_rates(k, result);
+    return result;
+  }
+
+  system::InternalForces unknowns() {
+    system::InternalForces result;
+    solve();
+    result.values = tension_;
+    std::tie(result.matrix, result.side) = equations();
+    for (std::uint32_t i = 0; i < tension_.size(); ++i) {
+      result.symbols.push_back({symbolic::SymbolKind::auxiliary, first_tension + i, 0});
+      tension_[i] = dag_.symbol(result.symbols.back());
+    }
+    system::Solution accelerations{std::vector<Ref>(tree_.J.size()), {}, {}};
+    for (std::size_t k = 0; k < links_.links.size(); ++k) second_rates(k, accelerations);
+    result.qddot = std::move(accelerations.qddot);
+    return result;
+  }
+
+ private:
+  /// S and b of S T = b.
+  std::pair<std::vector<Ref>, std::vector<Ref>> equations() {
     const std::size_t n = tension_directions_.size();
     std::vector<Ref> S(n * n), b;
     for (std::size_t i = 0; i < n; ++i) {
@@ -124,14 +153,9 @@ class Tensions {
       }
       b.push_back(dag_.neg(relative(k, N)));
     }
-    symbolic::Factorisation factors(dag_, std::move(S), n, symbolic::Ties::descending);
-    tension_ = factors.backward(factors.forward(b));
-    result.pivots = factors.pivots();
-    for (std::size_t k = 0; k < links_.links.size(); ++k) second_rates(k, result);
-    return result;
+    return {std::move(S), std::move(b)};
   }
 
- private:
   /// W_k / m_first: the force along the J that is equivalent to f_k on theta_k.
   Vec3 free_force(const TensionLink& loaded) {
     const Vec3 none = symbolic::zero_vector(dag_);
@@ -244,6 +268,32 @@ std::optional<TensionLinks> tension_links(Dag& dag, const ParticleTree& tree) {
 
 system::Solution tree_accelerations(Dag& dag, const ParticleTree& tree, const TensionLinks& links) {
   return Tensions(dag, tree, links).solve();
+}
+
+std::optional<system::InternalForces> tree_tensions(Mechanics& m) {
+  if (!m.active.empty()) return std::nullopt;
+  Dag& dag = *m.dag;
+  const std::optional<ParticleTree> tree = particle_tree(m, m.free, true);
+  if (!tree || tree->links.size() < 2) return std::nullopt;  // of one particle the mass would no longer cancel
+  const std::optional<TensionLinks> links = tension_links(dag, *tree);
+  if (!links) return std::nullopt;
+  // The applied forces are not expanded: norms in them keep their sums of squares (symbolic/norm_slope.hpp).
+  ParticleTree plain = *tree;
+  std::map<symbolic::Symbol, Ref> applied;
+  for (std::uint32_t a = 0; a < plain.f.size(); ++a) {
+    if (dag.is_zero(plain.f[a])) continue;
+    const symbolic::Symbol force{symbolic::SymbolKind::auxiliary, first_tension + a, 1};
+    applied[force] = plain.f[a];
+    plain.f[a] = dag.symbol(force);
+  }
+  system::InternalForces forces = Tensions(dag, plain, *links).unknowns();
+  if (forces.symbols.empty()) return std::nullopt;
+  symbolic::Substitution as_applied(dag, std::move(applied)), back = tree->coordinates.back(dag);
+  for (auto* list : {&forces.matrix, &forces.side, &forces.values, &forces.qddot}) {
+    for (Ref& r : *list) r = back(as_applied(r));
+  }
+  if (!tree->coordinates.identity()) forces.qddot = symbolic::multiply(dag, tree->coordinates.S_inverse, forces.qddot);
+  return forces;
 }
 
 }  // namespace eomgen::derive

@@ -31,4 +31,8 @@ std::optional<TensionLinks> tension_links(Dag& dag, const ParticleTree& tree);
 /// The second derivatives of theta, as expressions in theta and its rate.
 system::Solution tree_accelerations(Dag& dag, const ParticleTree& tree, const TensionLinks& links);
 
+/// The tensions of the tree of the free coordinates as unknowns, in the coordinates of the model. Empty if a condition
+/// of `articulated` is not met, and for a single link.
+std::optional<system::InternalForces> tree_tensions(Mechanics& mechanics);
+
 }  // namespace eomgen::derive
