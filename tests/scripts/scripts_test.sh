@@ -135,7 +135,7 @@ expect 2 "a document without a place for the ledger is refused" "$source/scripts
 # --- style
 if command -v shellcheck >/dev/null; then
   mapfile -t shell_scripts < <(grep -LE '^#!.*python' "$source"/scripts/*)
-  expect 0 "shellcheck has nothing to say" shellcheck -x -P "$source" "${shell_scripts[@]}" "$source/.ci/run" \
+  expect 0 "shellcheck has nothing to say" shellcheck -x -P "$source" "${shell_scripts[@]}" "$source/.ci/run" "$source/.ci/nightly" \
     "$source/tests/scripts/scripts_test.sh" "$source/tests/scripts/commands_test.sh" "$source/tests/install/install_test.sh" \
     "$source/docs/images/make"
 fi
