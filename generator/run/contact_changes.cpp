@@ -57,6 +57,27 @@ void change_contacts(VariationalEquations& in, const eom::Crossing& crossing, do
   if (ended) refuse_derivative(fmt::format("a contact ends the run at t = {}", t));
 }
 
+std::string ended_bounces(const VariationalEquations& in, const ContactSnapshot& before, const ContactSnapshot& after) {
+  constexpr std::size_t several = 3;  // as where a run ends such a sequence (solved_contacts.hpp)
+  if (before.modes && after.modes) {
+    const std::vector<eom::Contact>& contacts = in.problem.code->contacts;
+    for (std::size_t j = 0; j < contacts.size(); ++j) {
+      const bool closes = contacts[j].unilateral && eom::contact_digit(before.modes->mode, j) == 3 &&
+                          eom::contact_digit(after.modes->mode, j) != 3;
+      if (closes && before.modes->hits.of(j) >= static_cast<std::ptrdiff_t>(several)) return contacts[j].name;
+    }
+  }
+  if (before.solved && after.solved) {
+    const std::vector<eom::contacts::Description>& contacts = in.problem.code->contact_set.contacts;
+    for (std::size_t j = 0; j < contacts.size(); ++j) {
+      const bool closes = before.solved->states[j].mode == eom::contacts::Mode::open &&
+                          after.solved->states[j].mode != eom::contacts::Mode::open;
+      if (closes && before.solved->hits[j] >= several) return contacts[j].name;
+    }
+  }
+  return "";
+}
+
 std::string unfollowed_contacts(const RunRequest& request) {
   const auto two = [](const auto& contact) { return contact.sticks && contact.dimensions == 2; };
   for (const eom::Contact& contact : request.code.contacts) {

@@ -35,6 +35,9 @@ void watch_contacts(VariationalEquations& in, std::span<eom::EventFunction> func
 /// "run"} if it ends the run.
 void change_contacts(VariationalEquations& in, const eom::Crossing& crossing, double& t, std::vector<double>& x);
 
+/// The name of a contact that has bounced several times and stays closed from this change on; empty if there is none.
+std::string ended_bounces(const VariationalEquations& in, const ContactSnapshot& before, const ContactSnapshot& after);
+
 /// The reason why derivatives cannot follow the contacts of a run; empty if they can.
 std::string unfollowed_contacts(const RunRequest& request);
 

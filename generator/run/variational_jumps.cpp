@@ -18,6 +18,11 @@ using eom::hybrid::Breakpoint;
 constexpr double continuous = 1e-10;  // of f: a smaller jump is rounding
 constexpr double impulse = 1e-9;      // of the state: a smaller change is rounding
 
+/// Their number up to lasting contact differs beside the motion, and their sum has no derivative by differences.
+std::string accumulation(const std::string& contact, double t) {
+  return fmt::format("the bounces of '{}' accumulate and end in lasting contact at t = {}", contact, t);
+}
+
 }  // namespace
 
 VariationalJumps::VariationalJumps(const RunRequest& request, const RunResult& motion, const std::string& solver,
@@ -304,12 +309,14 @@ bool VariationalJumps::change_contact(const eom::EventPoint& point) {
   restore_contacts(own_, modes);  // slip speeds beside the motion are not observed ones
   std::optional<ContactSnapshot> next;
   bool same = true;
+  std::string bounces;  // the contact whose sequence of bounces ends here, or beside the motion
   const auto changed = [&](VariationalEquations& in, double at, std::vector<double> state) {
     restore_contacts(in, modes);
     change_contacts(in, point.crossing, at, state);
     const ContactSnapshot now = save_contacts(in);
     if (!next) next = now;
     same = same && now.has_modes_of(*next);
+    if (bounces.empty()) bounces = ended_bounces(in, modes, now);
     restore_contacts(in, modes);
     state.push_back(at);
     return state;
@@ -333,6 +340,7 @@ bool VariationalJumps::change_contact(const eom::EventPoint& point) {
     }
     const Direction& direction = directions_[d];
     const auto what = [&] {
+      if (!bounces.empty()) return accumulation(bounces, t);
       return fmt::format("the change of a contact at t = {} does not change smoothly with {}", t, direction.name);
     };
     std::vector<std::vector<double>> beside;
@@ -347,6 +355,7 @@ bool VariationalJumps::change_contact(const eom::EventPoint& point) {
     for (std::size_t k = 0; k <= n_; ++k) slope[k] += of_scene[k];
     slopes_after.push_back(std::move(slope));
   }
+  if (!same && !bounces.empty()) refuse_derivative(accumulation(bounces, t));
   if (!same) refuse_derivative(fmt::format("beside the motion, a contact changes to another mode at t = {}", t));
   std::copy(after.begin(), after.end() - 1, point.x.begin());
   point.t = after[n_];

@@ -153,7 +153,9 @@ TEST_CASE("sensitivity: impacts with friction agree with differences of runs") {
 TEST_CASE("sensitivity: contacts that slide in two directions, and bounces that accumulate, are refused by name") {
   const Folder folder;
   CHECK(contains(expect(2, folder, {"run", "bouncing_ball", "--sensitivity", "g"}).err,
-                 "the change of a contact at t = 1.3545"));
+                 "accumulate and end in lasting contact at t = 1.3545"));
+  CHECK(contains(expect(2, folder, {"run", "ball_chain", "--sensitivity", "e"}).err,
+                 "accumulate and end in lasting contact at t = 0.496"));
   const std::string puck =
       "format = 1\n[parameters]\nm = 1\nmu = 0.3\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = "
       "[\"x\", \"y\", \"z\"] }\n[[force]]\ngravity = \"-9.81*E3\"\n[[constraint]]\nname = \"table\"\nholonomic = "
