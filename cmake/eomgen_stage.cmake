@@ -21,7 +21,7 @@ endfunction()
 
 # eomgen_unite(TARGET): with EOMGEN_UNITY, compiles the sources of a target in groups, each as one file. Headers and templates
 # are then read once for a group. Names of one file (in its anonymous namespace) must differ from those of the others of its
-# target; tests/architecture requires it.
+# target; tests/architecture requires it of the stages.
 function(eomgen_unite target)
   if(EOMGEN_UNITY)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
@@ -77,6 +77,7 @@ function(eomgen_test name)
   if(NOT ARG_OWN_OPTIONS)
     eomgen_take_precompiled(test_${name} eomgen_test_main)
   endif()
+  eomgen_unite(test_${name})
   add_test(NAME ${name} COMMAND test_${name})
   if(TARGET sanitized AND name IN_LIST EOMGEN_SANITIZED)
     set_tests_properties(${name} PROPERTIES LABELS sanitized)

@@ -21,7 +21,7 @@ std::vector<std::string> write(const Example& e, const Folder& folder) {
   return names;
 }
 
-std::string wrong(const Example& e) {
+std::string wrong_kernel(const Example& e) {
   const Folder folder;
   write(e, folder);
   const std::string name = emit::mangled_id(e.context.id), path = folder.path + "/" + name;
@@ -43,13 +43,13 @@ TEST_CASE("cuda: the host form agrees with C, and members end with the bits of e
   for (const Example& e : examples()) {  // with constraints, inputs, and equations without inertia
     if (e.context.id == "pendulum" || e.context.id == "spherical") continue;
     INFO(e.context.id);
-    CHECK(wrong(e) == "");
+    CHECK(wrong_kernel(e) == "");
   }
 }
 
 TEST_CASE("cuda: hostile names") {
-  CHECK(wrong(example("device", double_pendulum(), {"Model", "members"},
-                      {"EOM_DEVICE", "EOM_GPU", "threadIdx", "rhs", "eom_sincos"})) == "");
+  CHECK(wrong_kernel(example("device", double_pendulum(), {"Model", "members"},
+                             {"EOM_DEVICE", "EOM_GPU", "threadIdx", "rhs", "eom_sincos"})) == "");
 }
 
 TEST_CASE("cuda: nvcc compiles it without warnings, if installed") {
