@@ -102,7 +102,7 @@ class ContactForces {
     if (!this.readRows(t, x, u) || !this.readFree(t, x, u)) return false;
     this.contacts.forEach((at, j) => {
       if (!this.isClosed(j)) return;
-      if (this.isHeld(j)) {
+      if (this.isHeld(j) && !this.isPreventedBySticking(j)) {
         patterns.push(this.normalPattern(j, true));
         rows.push(at.normal);
       }
@@ -120,13 +120,41 @@ class ContactForces {
       const {x: forces} = leastNorm(W, right);
       patterns.forEach((pattern, k) => {
         this.push(u, pattern, forces[k]);
-        if (pattern.component >= 0) return;
+        if (pattern.component >= 0) { this.passToStop(u, pattern, forces[k]); return; }
         this.lambda[pattern.j] = forces[k];
         if (this.rubs(pattern.j)) this.margins[pattern.j] = W[k][k];
       });
     }
     this.contacts.forEach((at, j) => this.slips(j).forEach((_, a) => { this.phi[j][a] = u[at.friction_input + a]; }));
     return true;
+  }
+  // s with row = s times the other; 0 if they are not parallel.
+  ratio(row, other) {
+    const {c} = this, at = (of, k) => c[of.first + 2 + k];
+    if (row.columns.length === 0 || row.columns.length !== other.columns.length || row.columns.some((column, k) => column !== other.columns[k])) return 0;
+    const largest = row.columns.reduce((best, _, k) => (Math.abs(at(other, k)) > Math.abs(at(other, best)) ? k : best), 0);
+    if (at(other, largest) === 0) return 0;
+    const s = at(row, largest) / at(other, largest);
+    return row.columns.every((_, k) => Math.abs(at(row, k) - s * at(other, k)) <= 1e-12 * Math.abs(at(row, largest))) ? s : 0;
+  }
+  // Whether friction sticks along the normal of contact j, as of a coordinate on its end stop: their rows are one.
+  isPreventedBySticking(j) {
+    const at = this.contacts[j];
+    if (!at.unilateral || this.rubs(j)) return false;
+    return this.contacts.some((_, i) => i !== j && this.isSticking(i) && this.slips(i).some((row) => this.ratio(row, at.normal) !== 0));
+  }
+  // What friction would take of a force that presses on a contact along its direction is the force of that contact.
+  passToStop(u, tangent, force) {
+    const row = this.slips(tangent.j)[tangent.component];
+    for (let j = 0; j < this.contacts.length; ++j) {
+      if (j === tangent.j || !this.isClosed(j) || !this.contacts[j].unilateral || this.rubs(j)) continue;
+      const lambda = force * this.ratio(row, this.contacts[j].normal);
+      if (!(lambda > 0)) continue;
+      this.push(u, tangent, -force);
+      this.push(u, this.normalPattern(j, false), lambda);
+      this.lambda[j] = lambda;
+      return;
+    }
   }
   normalForce(j) {
     const at = this.contacts[j];

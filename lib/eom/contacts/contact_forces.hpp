@@ -215,7 +215,8 @@ class ContactForces {
     rows_.clear();
     for (std::size_t j = 0; j < set_.contacts.size(); ++j) {
       if (!is_closed(j)) continue;
-      if (contact(j).has_constraint()) patterns.push_back(normal_pattern(j, true)), rows_.push_back(&contact(j).normal);
+      if (contact(j).has_constraint() && !is_prevented_by_sticking(j))
+        patterns.push_back(normal_pattern(j, true)), rows_.push_back(&contact(j).normal);
       for (std::size_t a = 0; a < contact(j).slip.size() && is_sticking(j); ++a)
         patterns.push_back(tangent_pattern(j, a)), rows_.push_back(&contact(j).slip[a]);
     }
@@ -246,6 +247,8 @@ class ContactForces {
           lambda_[pattern.contact] = forces.x(k);
           if (has_friction(pattern.contact))
             margins_[pattern.contact] = W(k, k), signs_of_margins(pattern.contact, right(k));
+        } else {
+          pass_to_stop(u, pattern, forces.x(k));
         }
       }
     }
@@ -289,6 +292,44 @@ class ContactForces {
  private:
   static void push(double* u, const Pattern& pattern, double amount) {
     for (const auto& [input, share] : pattern.inputs) u[input] += share * amount;
+  }
+  /// s with row = s times the other; 0 if they are not parallel.
+  double ratio(const Row& row, const Row& other) const {
+    constexpr double rounding = 1e-12;
+    if (row.columns != other.columns) return 0;
+    std::size_t largest = 0;
+    for (std::size_t k = 1; k < row.columns.size(); ++k)
+      if (std::abs(c_[other.slope(k)]) > std::abs(c_[other.slope(largest)])) largest = k;
+    if (row.columns.empty() || c_[other.slope(largest)] == 0) return 0;
+    const double s = c_[row.slope(largest)] / c_[other.slope(largest)];
+    for (std::size_t k = 0; k < row.columns.size(); ++k) {
+      const double size = std::abs(c_[row.slope(largest)]);
+      if (std::abs(c_[row.slope(k)] - s * c_[other.slope(k)]) > rounding * size) return 0;
+    }
+    return s;
+  }
+  /// Whether friction sticks along the normal of contact j, as of a coordinate on its end stop: their rows are one.
+  bool is_prevented_by_sticking(std::size_t j) const {
+    if (!contact(j).unilateral || has_friction(j)) return false;
+    for (std::size_t i = 0; i < set_.contacts.size(); ++i) {
+      for (const Row& row : contact(i).slip)
+        if (i != j && is_sticking(i) && ratio(row, contact(j).normal) != 0) return true;
+    }
+    return false;
+  }
+  /// What friction would take of a force that presses on a contact along its direction is the force of that contact:
+  /// friction acts where nothing else prevents slip.
+  void pass_to_stop(double* u, const Pattern& tangent, double force) {
+    const Row& row = contact(tangent.contact).slip[static_cast<std::size_t>(tangent.component)];
+    for (std::size_t j = 0; j < set_.contacts.size(); ++j) {
+      if (j == tangent.contact || !is_closed(j) || !contact(j).unilateral || has_friction(j)) continue;
+      const double lambda = force * ratio(row, contact(j).normal);
+      if (!(lambda > 0)) continue;
+      push(u, tangent, -force);
+      push(u, normal_pattern(j, false), lambda);
+      lambda_[j] = lambda;
+      return;
+    }
   }
   void signs_of_margins(std::size_t j, double minus_free) {
     several_.resize(set_.contacts.size());
