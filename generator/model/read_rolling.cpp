@@ -53,6 +53,12 @@ std::map<std::string, TypedNode> ContactsReader::plane_of_contact(const Value& o
     plane["t2"] = basis((k + 2) % 3);
     return plane;
   }
+  if (node.op == Op::negate && model_.arena[node.args[0]].op == Op::fixed_basis) {
+    plane["n"] = normal;
+    plane["t1"] = basis((model_.arena[node.args[0]].index + 1) % 3);
+    plane["t2"] = resolver_.text("cross(n, t1)", plane, span, position);
+    return plane;
+  }
   plane["n"] = resolver_.unit_of_vector(normal, span);
   plane["t1"] = resolver_.text("unit(E1 - dot(E1, n)*n)", plane, span, position);
   plane["t2"] = resolver_.text("cross(n, t1)", plane, span, position);

@@ -236,6 +236,65 @@ TEST_CASE("contacts: gap.NAME is the value of a unilateral constraint, whatever 
   CHECK(contains(expect(2, folder, {"run", "model.toml", "--output", "gap.nothing"}).err, "gap.floor"));
 }
 
+TEST_CASE("contacts: end stops take what presses on them, and dry friction of the same coordinates the rest") {
+  const Folder folder;
+  const auto run = [&](const std::string& force, const std::string& scene) {
+    folder.write(
+        "model.toml",
+        "format = 1\n[coordinates]\na = {}\nb = {}\n[energy]\nkinetic = \"a_dot^2/2 + b_dot^2/2 + "
+        "0.3*a_dot*b_dot\"\n[[force]]\ngeneralized = { a = \"" +
+            force +
+            "\", b = \"-3\" }\n[[force]]\nname = \"fa\"\ndry = { coordinate = \"a\", normal = \"1.5\", static = "
+            "0.4, dynamic = 0.35 }\n[[force]]\nname = \"fb\"\ndry = { coordinate = \"b\", normal = \"2\", "
+            "static = 0.4, dynamic = 0.3 }\n[[contact]]\nname = \"s\"\nlimits = { a = [\"-1\", \"1\"], b = "
+            "[\"-0.5\", \"0.9\"] }\nrestitution = 0.3\n[scene.default]\n" +
+            scene + "\n");
+    return document(folder, {"run", "model.toml", "--output", "reaction.s_a_upper,friction.fa", "--out", "a.csv"});
+  };
+  // Both are pressed on their stops for ever, after bounces that accumulate.
+  const Json pressed = run("5", "t = [0, 4]\ninitial = { a_dot = 0.2 }");
+  CHECK(pressed["outcome"] == "done");
+  CHECK(pressed["final"]["a"].get<double>() == doctest::Approx(1).epsilon(1e-12));
+  CHECK(pressed["final"]["b"].get<double>() == doctest::Approx(-0.5).epsilon(1e-12));
+  // The push becomes a pull: the stop lets go at 0, and friction holds up to 0.4*1.5 = 0.6.
+  const Json pulled = run("5*cos(t)", "t = [0, 2]\ninitial = { a = 1, b = -0.5 }");
+  const Table table = read_table(folder.read("a.csv"));
+  for (std::size_t k = 0; k < table.rows.size(); ++k) {
+    const double t = table.at(k, "t"), push = 5 * std::cos(t);
+    CAPTURE(t);
+    if (push < -0.6) continue;
+    CHECK(std::abs(table.at(k, "reaction.s_a_upper")) == doctest::Approx(std::max(push, 0.0)).epsilon(1e-12));
+    CHECK(table.at(k, "friction.fa") == doctest::Approx(std::max(-push, 0.0)).epsilon(1e-12));
+  }
+  REQUIRE(pulled["events"].size() == 2);
+  for (const Json& event : pulled["events"])
+    CHECK(event["t"].get<double>() == doctest::Approx(std::acos(-0.12)).epsilon(1e-8));  // far below a step
+}
+
+TEST_CASE("contacts: walls with normals along E1 and against it have friction, and mirrored throws are mirrored") {
+  const Folder folder;
+  const auto end = [&](const std::string& side, const std::string& sign) {
+    folder.write(
+        "box.toml",
+        "format = 1\n[[body]]\nname = \"B\"\nmass = 1\ninertia = { box = [0.4, 0.1, 0.2] }\nposition = { "
+        "cartesian = [\"x\", 0, \"z\"] }\nrotation = { axis = \"E2\", angle = \"th\" }\n[[force]]\ngravity = "
+        "\"-9.81*E3\"\n[[contact]]\nname = \"f\"\nbody = \"B\"\npoints = { l = \"-0.2*B.e1 - 0.1*B.e3\", r = "
+        "\"0.2*B.e1 - 0.1*B.e3\" }\non = \"ground\"\nrestitution = 0.4\nfriction = { static = 0.5, dynamic = 0.3 "
+        "}\n[[contact]]\nname = \"w\"\nbody = \"B\"\npoints = { r = \"" +
+            side + "0.2*B.e1 - 0.1*B.e3\", ru = \"" + side + "0.2*B.e1 + 0.1*B.e3\" }\non = { point = \"" + side +
+            "1*E1\", normal = \"" + (side.empty() ? "-E1" : "E1") +
+            "\" }\nrestitution = 0.4\nfriction = { static = 0.5, dynamic = 0.3 }\n[impacts]\nlaw = "
+            "\"moreau\"\n[scene.default]\nt = [0, 0.6]\ninitial = { z = 0.5, th = " +
+            sign + "0.3, x_dot = " + sign + "2.5, th_dot = " + sign + "1 }\n");
+    return document(folder, {"run", "box.toml"})["final"];
+  };
+  const Json right = end("", ""), left = end("-", "-");
+  CHECK(right["x"].get<double>() < 0.9);  // it has bounced off the wall
+  for (const char* mirrored : {"x", "th", "x_dot", "th_dot"})
+    CHECK(left[mirrored].get<double>() == doctest::Approx(-right[mirrored].get<double>()).epsilon(1e-8));
+  CHECK(left["z"].get<double>() == doctest::Approx(right["z"].get<double>()).epsilon(1e-8));
+}
+
 TEST_CASE("impacts: Stronge's law is refused for slip in two directions, and for simultaneous impacts") {
   refused(falling_rod("law = \"stronge\"\norder = \"simultaneous\"", 0.2, 0.5), "one contact at a time");
   std::string ball = falling("sphere = \"R\"");
