@@ -63,7 +63,14 @@ class ContactForces {
         phi_(set.contacts.size()),
         amplitude_(3 * set.contacts.size(), 1.0),
         free_(n_),
-        work_(n_) {}
+        work_(n_) {
+    for (std::size_t j = 0; j < set_.contacts.size(); ++j) {
+      for (std::size_t i = 0; i < set_.contacts.size() && contact(j).unilateral; ++i) {
+        for (const Row& slip : contact(i).slip)
+          if (i != j && slip.columns == contact(j).normal.columns) alike_.push_back({j, i, &slip});
+      }
+    }
+  }
 
   /// The contacts.
   const Set& set() const { return set_; }
@@ -293,10 +300,9 @@ class ContactForces {
   static void push(double* u, const Pattern& pattern, double amount) {
     for (const auto& [input, share] : pattern.inputs) u[input] += share * amount;
   }
-  /// s with row = s times the other; 0 if they are not parallel.
+  /// s with row = s times the other, of the same columns; 0 if they are not parallel.
   double ratio(const Row& row, const Row& other) const {
     constexpr double rounding = 1e-12;
-    if (row.columns != other.columns) return 0;
     std::size_t largest = 0;
     for (std::size_t k = 1; k < row.columns.size(); ++k)
       if (std::abs(c_[other.slope(k)]) > std::abs(c_[other.slope(largest)])) largest = k;
@@ -310,24 +316,22 @@ class ContactForces {
   }
   /// Whether friction sticks along the normal of contact j, as of a coordinate on its end stop: their rows are one.
   bool is_prevented_by_sticking(std::size_t j) const {
-    if (!contact(j).unilateral || has_friction(j)) return false;
-    for (std::size_t i = 0; i < set_.contacts.size(); ++i) {
-      for (const Row& row : contact(i).slip)
-        if (i != j && is_sticking(i) && ratio(row, contact(j).normal) != 0) return true;
-    }
-    return false;
+    return std::any_of(alike_.begin(), alike_.end(), [&](const Alike& pair) {
+      return pair.stop == j && !has_friction(j) && is_sticking(pair.sticking) &&
+             ratio(*pair.slip, contact(j).normal) != 0;
+    });
   }
   /// What friction would take of a force that presses on a contact along its direction is the force of that contact:
   /// friction acts where nothing else prevents slip.
   void pass_to_stop(double* u, const Pattern& tangent, double force) {
     const Row& row = contact(tangent.contact).slip[static_cast<std::size_t>(tangent.component)];
-    for (std::size_t j = 0; j < set_.contacts.size(); ++j) {
-      if (j == tangent.contact || !is_closed(j) || !contact(j).unilateral || has_friction(j)) continue;
-      const double lambda = force * ratio(row, contact(j).normal);
+    for (const Alike& pair : alike_) {
+      if (pair.slip != &row || !is_closed(pair.stop) || has_friction(pair.stop)) continue;
+      const double lambda = force * ratio(row, contact(pair.stop).normal);
       if (!(lambda > 0)) continue;
       push(u, tangent, -force);
-      push(u, normal_pattern(j, false), lambda);
-      lambda_[j] = lambda;
+      push(u, normal_pattern(pair.stop, false), lambda);
+      lambda_[pair.stop] = lambda;
       return;
     }
   }
@@ -335,6 +339,12 @@ class ContactForces {
     several_.resize(set_.contacts.size());
     several_[j] = minus_free < 0;
   }
+
+  /// A contact that can open, and the slip of another one in the same coordinates.
+  struct Alike {
+    std::size_t stop, sticking;
+    const Row* slip;
+  };
 
   const Set& set_;
   System& system_;
@@ -344,6 +354,7 @@ class ContactForces {
   std::vector<std::array<double, 2>> phi_;
   std::vector<double> amplitude_;
   std::vector<bool> several_;
+  std::vector<Alike> alike_;
   std::vector<Pattern> patterns_;
   std::vector<const Row*> rows_;
   Vector free_, work_, response_;
