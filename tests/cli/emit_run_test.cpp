@@ -128,7 +128,8 @@ TEST_CASE("targets that integrate refuse kinks in time at which velocities jump"
     words.insert(words.end(), further.begin(), further.end());
     return contains(expect(0, folder, words).err, "have no impulses");
   };
-  for (const Json& target : document(folder, {"list"})["targets"]) {
+  const Json registries = document(folder, {"list"});
+  for (const Json& target : registries["targets"]) {
     const std::string name = target["name"];
     CAPTURE(name);
     if (name == "fmu" || name == "latex") continue;
