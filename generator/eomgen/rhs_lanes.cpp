@@ -20,7 +20,8 @@ std::vector<double> in_lanes(const double* values, std::size_t count) {
 
 const jit::LaneCode* RhsLanes::find(const PreparedRun& run, bool prepared) const {
   if (!is_made_.load(std::memory_order_acquire)) {
-    if (!jit::has_lanes()) return nullptr;
+    // Code of a compiler may have been asked for where no memory may become executable.
+    if (!jit::has_lanes() || run.compilation->code.tier() != pipeline::Tier::jit) return nullptr;
     const std::unique_lock lock(library_mutex(), std::try_to_lock);
     if (!lock) return nullptr;
     if (!is_made_.load(std::memory_order_relaxed)) {

@@ -17,8 +17,8 @@ struct PreparedRun;
 /// Code that is made at the first call that asks for it. May be used from any thread.
 class RhsLanes {
  public:
-  /// The code of `rhs`, or of `rhs_prepared`; null if it is not faster, on other processors, and while another call
-  /// derives. The program is read under the lock of the library.
+  /// The code of `rhs`, or of `rhs_prepared`; null if it is not faster, on other processors, in the tier `compiled`,
+  /// and while another call derives. The program is read under the lock of the library.
   const jit::LaneCode* find(const PreparedRun& run, bool prepared) const;
 
  private:
