@@ -253,8 +253,7 @@ void require_ends(const SteadyMotions& result, std::size_t most) {
               fmt::format("no equilibrium and no steady motion found: {} of the starts end where {} no slope ({})",
                           search.failed_starts, source.what, search.reason),
               "take coordinates that are regular there, put a smooth law in place of the one that has a kink or a root "
-              "there, or "
-              "begin the search at another start");
+              "there, or begin the search at another start");
 }
 
 void classify_stability(SteadyMotions& result, const SteadyRequest& request, const ConservedQuantities& kept) {

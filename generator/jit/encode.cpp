@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "jit/encode.hpp"
 
-#include <asmjit/x86.h>
-
 #include <array>
 #include <cstdlib>
 #include <optional>
 #include <stdexcept>
 
+#include "jit/assembler.hpp"
 #include "jit/kernels.hpp"
 
 namespace eomgen::jit {
@@ -29,24 +28,7 @@ x86::Gp argument_register(std::size_t k) {
 
 bool is_integer(abi::Input input) { return input != abi::Input::time; }
 
-std::int32_t offset_of(std::size_t index) {
-  constexpr std::size_t limit = 0x7fffffff / sizeof(double) - 16;
-  if (index > limit) throw std::logic_error("an array is too long for machine code");
-  return static_cast<std::int32_t>(index * sizeof(double));
-}
-
-/// Errors of the assembler are defects of this file.
-class Failure : public asmjit::ErrorHandler {
- public:
-  void handleError(asmjit::Error, const char* message, asmjit::BaseEmitter*) override {
-    throw std::logic_error(std::string("assembler: ") + message);
-  }
-};
-
-void require(asmjit::Error error) {
-  if (error != asmjit::kErrorOk)
-    throw std::logic_error(std::string("assembler: ") + asmjit::DebugUtils::errorAsString(error));
-}
+std::int32_t offset_of(std::size_t index) { return array_offset(index, sizeof(double)); }
 
 /// One function.
 class Body {
@@ -79,7 +61,7 @@ class Body {
     // registers are on the stack.
     result_pointers_ = function_.scratch_size;
     frame_ = offset_of((result_pointers_ + most_results + 1) / 2 * 2);
-    make_frame();
+    make_frame(a_, frame_);
     std::size_t k = 0;
     x86::Gp mode = x86::rax;
     bool has_mode = false;
@@ -154,17 +136,6 @@ class Body {
       a_.movsd(x86::ptr(x86::rsp, offset_of(value.scratch)), x86::xmm1);
     }
     a_.bind(end);
-  }
-
-  /// Touches a large frame page by page, so that it cannot step over the guard page.
-  void make_frame() {
-    constexpr std::int32_t page = 4096;
-    std::int32_t rest = frame_;
-    for (; rest > page; rest -= page) {
-      a_.sub(x86::rsp, page);
-      a_.or_(x86::dword_ptr(x86::rsp), 0);
-    }
-    a_.sub(x86::rsp, rest);
   }
 
   void call(const void* function) {
@@ -306,7 +277,7 @@ class Body {
 }  // namespace
 
 struct Encoder::Assembly {
-  Failure failure;
+  AssemblyFailure failure;
   asmjit::CodeHolder code;
   x86::Assembler to;
   std::vector<Label> entries;
@@ -399,22 +370,20 @@ FunctionNumber Encoder::with_context(const void* driver, const void* context, st
 
 Encoder::Finished Encoder::finish() {
   Assembly& a = *assembly_;
-  const auto embed_pair = [&](const Label& label, std::uint64_t bits) {
-    a.to.align(asmjit::AlignMode::kData, 16);
-    a.to.bind(label);
-    const std::array<std::uint64_t, 2> pair{bits, bits};
-    a.to.embed(pair.data(), sizeof pair);
-  };
-  embed_pair(a.sign_mask, 0x8000000000000000u);
-  embed_pair(a.value_mask, 0x7fffffffffffffffu);
-  require(a.code.flatten());
-  require(a.code.resolveUnresolvedLinks());
-  require(a.code.relocateToBase(0));  // nothing depends on the address
-  std::vector<unsigned char> bytes(a.code.codeSize());
-  require(a.code.copyFlattenedData(bytes.data(), bytes.size()));
-  Finished finished{std::make_unique<ExecutableMemory>(bytes.data(), bytes.size()), {}};
+  embed_numbers<2>(a.to, a.sign_mask, 0x8000000000000000u);
+  embed_numbers<2>(a.to, a.value_mask, 0x7fffffffffffffffu);
+  Finished finished{executable(a.code), {}};
   for (const Label& label : a.entries) finished.entries.push_back(finished.memory->at(a.code.labelOffset(label)));
   return finished;
+}
+
+std::unique_ptr<ExecutableMemory> executable(asmjit::CodeHolder& code) {
+  require(code.flatten());
+  require(code.resolveUnresolvedLinks());
+  require(code.relocateToBase(0));  // nothing depends on the address
+  std::vector<unsigned char> bytes(code.codeSize());
+  require(code.copyFlattenedData(bytes.data(), bytes.size()));
+  return std::make_unique<ExecutableMemory>(bytes.data(), bytes.size());
 }
 
 const char* encoder_refusal() { return ""; }

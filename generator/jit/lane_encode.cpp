@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "jit/lane_encode.hpp"
 
-#include <asmjit/x86.h>
-
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <stdexcept>
-#include <vector>
 
+#include "jit/assembler.hpp"
 #include "jit/kernels.hpp"
 
 namespace eomgen::jit {
@@ -33,24 +30,7 @@ enum Predicate : std::uint32_t {
   above = 0x1e
 };
 
-std::int32_t lane_offset(std::size_t index) {
-  constexpr std::size_t limit = 0x7fffffff / lane_bytes - 16;
-  if (index > limit) throw std::logic_error("an array is too long for machine code");
-  return static_cast<std::int32_t>(index) * lane_bytes;
-}
-
-/// Errors of the assembler are defects of this file.
-class LaneFailure : public asmjit::ErrorHandler {
- public:
-  void handleError(asmjit::Error, const char* message, asmjit::BaseEmitter*) override {
-    throw std::logic_error(std::string("assembler: ") + message);
-  }
-};
-
-void require_encoded(asmjit::Error error) {
-  if (error != asmjit::kErrorOk)
-    throw std::logic_error(std::string("assembler: ") + asmjit::DebugUtils::errorAsString(error));
-}
+std::int32_t lane_offset(std::size_t index) { return array_offset(index, lane_bytes); }
 
 class LaneBody {
  public:
@@ -74,9 +54,9 @@ class LaneBody {
     for (const x86::Gp& reg : {lane_arguments, lane_numbers, lane_inputs, lane_prepared, lane_parameters, lane_state})
       a_.pop(reg);
     a_.ret();
-    embed(sign_mask_, 0x8000000000000000u);
-    embed(value_mask_, 0x7fffffffffffffffu);
-    embed(ones_, 0x3ff0000000000000u);
+    embed_numbers<lane_width>(a_, sign_mask_, 0x8000000000000000u);
+    embed_numbers<lane_width>(a_, value_mask_, 0x7fffffffffffffffu);
+    embed_numbers<lane_width>(a_, ones_, 0x3ff0000000000000u);
   }
 
  private:
@@ -87,7 +67,7 @@ class LaneBody {
     // alignment: the return address and six registers are on the stack.
     saved_ = function_.scratch_size;
     frame_ = lane_offset(saved_ + 4) + 8;
-    make_frame();
+    make_frame(a_, frame_);
     a_.mov(lane_arguments, x86::rdi);
     const auto argument = [&](const x86::Gp& reg, std::size_t offset) {
       a_.mov(reg, x86::ptr(lane_arguments, static_cast<std::int32_t>(offset)));
@@ -111,17 +91,6 @@ class LaneBody {
       }
       a_.vmovupd(scratch(value.scratch), x86::ymm0);
     }
-  }
-
-  /// Touches a large frame page by page, so that it cannot step over the guard page.
-  void make_frame() {
-    constexpr std::int32_t page = 4096;
-    std::int32_t rest = frame_;
-    for (; rest > page; rest -= page) {
-      a_.sub(x86::rsp, page);
-      a_.or_(x86::dword_ptr(x86::rsp), 0);
-    }
-    a_.sub(x86::rsp, rest);
   }
 
   x86::Mem scratch(std::size_t index) const { return x86::ymmword_ptr(x86::rsp, lane_offset(index)); }
@@ -277,13 +246,6 @@ class LaneBody {
     return_if(unordered);
   }
 
-  void embed(const Label& label, std::uint64_t bits) {
-    a_.align(asmjit::AlignMode::kData, lane_bytes);
-    a_.bind(label);
-    const std::array<std::uint64_t, lane_width> lanes{bits, bits, bits, bits};
-    a_.embed(lanes.data(), sizeof lanes);
-  }
-
   x86::Assembler& a_;
   const FunctionSteps& function_;
   const double* constants_;
@@ -298,18 +260,13 @@ class LaneBody {
 bool has_lanes() { return asmjit::CpuInfo::host().features().x86().hasAVX2(); }
 
 std::unique_ptr<ExecutableMemory> encode_lanes(const FunctionSteps& steps, const double* constants) {
-  LaneFailure failure;
+  AssemblyFailure failure;
   asmjit::CodeHolder code;
-  require_encoded(code.init(asmjit::Environment::host()));
+  require(code.init(asmjit::Environment::host()));
   code.setErrorHandler(&failure);
   x86::Assembler to(&code);
   LaneBody(to, steps, constants).write();
-  require_encoded(code.flatten());
-  require_encoded(code.resolveUnresolvedLinks());
-  require_encoded(code.relocateToBase(0));  // nothing depends on the address
-  std::vector<unsigned char> bytes(code.codeSize());
-  require_encoded(code.copyFlattenedData(bytes.data(), bytes.size()));
-  return std::make_unique<ExecutableMemory>(bytes.data(), bytes.size());
+  return executable(code);
 }
 
 }  // namespace eomgen::jit

@@ -15,6 +15,22 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+/// Residuals and derivatives of all rows by the free unknowns, at the current values.
+struct Rows {
+  VectorXd residual;
+  MatrixXd A;
+};
+
+Rows rows_at(const StartRows& rows, std::uint8_t order, const std::vector<std::size_t>& free) {
+  Rows result;
+  MatrixXd all;
+  rows.linearise(order, result.residual, all);
+  result.A = MatrixXd(all.rows(), static_cast<Eigen::Index>(free.size()));
+  for (std::size_t i = 0; i < free.size(); ++i)
+    result.A.col(static_cast<Eigen::Index>(i)) = all.col(static_cast<Eigen::Index>(free[i]));
+  return result;
+}
+
 struct Broken {
   std::size_t row;
   double off, relative;  // violation; the same relative to the terms of the row
@@ -23,12 +39,7 @@ struct Broken {
 /// For rates: the first constraint that is incompatible with the given values and the previous constraints, and its
 /// violation.
 std::optional<Broken> first_broken(const StartRows& rows, const std::vector<std::size_t>& free) {
-  VectorXd residual;
-  MatrixXd A;
-  rows.linearise(1, residual, A);
-  MatrixXd columns(A.rows(), static_cast<Eigen::Index>(free.size()));
-  for (std::size_t i = 0; i < free.size(); ++i)
-    columns.col(static_cast<Eigen::Index>(i)) = A.col(static_cast<Eigen::Index>(free[i]));
+  const auto [residual, columns] = rows_at(rows, 1, free);
   const std::vector<std::size_t>& bound = rows.of_order(1);
   const std::size_t turns = rows.first_angular_velocity_row();
   std::vector<std::size_t> before;
@@ -58,22 +69,6 @@ std::optional<Broken> first_broken(const StartRows& rows, const std::vector<std:
     before.push_back(k);
   }
   return std::nullopt;
-}
-
-/// Residuals and derivatives of all rows by the free unknowns, at the current values.
-struct Rows {
-  VectorXd residual;
-  MatrixXd A;
-};
-
-Rows rows_at(const StartRows& rows, std::uint8_t order, const std::vector<std::size_t>& free) {
-  Rows result;
-  MatrixXd all;
-  rows.linearise(order, result.residual, all);
-  result.A = MatrixXd(all.rows(), static_cast<Eigen::Index>(free.size()));
-  for (std::size_t i = 0; i < free.size(); ++i)
-    result.A.col(static_cast<Eigen::Index>(i)) = all.col(static_cast<Eigen::Index>(free[i]));
-  return result;
 }
 
 /// Moves the unknowns to a minimum of the squares of the residuals (K. Levenberg, Quarterly of Applied Mathematics 2

@@ -332,6 +332,7 @@ class ContactForces {
       push(u, tangent, -force);
       push(u, normal_pattern(pair.stop, false), lambda);
       lambda_[pair.stop] = lambda;
+      force_size_[pair.stop] = std::abs(lambda / force) * force_size_[tangent.contact];
       return;
     }
   }
