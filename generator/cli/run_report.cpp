@@ -16,7 +16,30 @@ namespace eomgen::cli {
 namespace {
 
 bool has_work(const run::RunEvent& event) {
-  return event.kind == "impulse" || (event.kind == "contact" && event.work != 0);
+  return event.kind == "impulse" || !event.impulses.empty() || (event.kind == "contact" && event.work != 0);
+}
+
+Json to_json(const eom::hybrid::ContactImpulse& impulse) {
+  Json friction = Json::array();
+  for (const double f : impulse.friction) friction.push_back(finite_or_null(f));
+  return {{"contact", impulse.contact},
+          {"normal", finite_or_null(impulse.normal)},
+          {"friction", friction},
+          {"work", finite_or_null(impulse.work)}};
+}
+
+/// "; impulses left 1.2, right 0.8 with friction 0.1", in N s.
+std::string impulse_text(const run::RunEvent& event) {
+  std::string text;
+  for (const eom::hybrid::ContactImpulse& one : event.impulses) {
+    const bool own = event.impulses.size() == 1 && one.contact == event.name;
+    text += fmt::format("{}{}{:.6g}", text.empty() ? (own ? "; impulse " : "; impulses ") : ", ",
+                        own ? "" : one.contact + " ", one.normal);
+    const bool has_friction = std::any_of(one.friction.begin(), one.friction.end(), [](double f) { return f != 0; });
+    for (std::size_t a = 0; a < one.friction.size() && has_friction; ++a)
+      text += fmt::format("{}{:.6g}", a == 0 ? " with friction " : " and ", one.friction[a]);
+  }
+  return text;
 }
 
 constexpr double unbounded = 1e308;  // replaces infinity, which JSON does not have
@@ -151,6 +174,7 @@ Json RunReport::json() const {
   for (const run::RunEvent& e : result.events) {
     events.push_back({{"t", e.t}, {"kind", e.kind}, {"name", e.name}});
     if (has_work(e)) events.back()["work"] = finite_or_null(e.work);
+    for (const eom::hybrid::ContactImpulse& impulse : e.impulses) events.back()["impulses"].push_back(to_json(impulse));
   }
   Json changes = Json::array();
   for (const eom::MethodChange& c : result.reason.changes)
@@ -255,8 +279,8 @@ std::string RunReport::text() const {
     out += line("solver change", fmt::format("t = {:.6g}: {} to {}: {}", c.t, c.from, c.to, eom::to_text(c)));
   }
   for (const run::RunEvent& e : result.events) {
-    out += line("event", fmt::format("{} at t = {}: {}{}", e.kind, e.t, e.name,
-                                     has_work(e) ? fmt::format(", work {:.6g}", e.work) : ""));
+    out += line("event", fmt::format("{} at t = {}: {}{}{}", e.kind, e.t, e.name,
+                                     has_work(e) ? fmt::format(", work {:.6g}", e.work) : "", impulse_text(e)));
   }
   for (const run::KinkCrossings& k : result.kinks)
     out += line("kink", fmt::format("of {}: crossed {} times", k.kink, k.count));

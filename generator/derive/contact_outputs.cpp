@@ -67,8 +67,11 @@ void add_contact_outputs(mechanics::Mechanics& m, EquationSystem& s) {
     const Ref slides = contact.width ? dag.one() : dag.symbol(system::slip_direction_symbol(j));
     const Ref open_mode = dag.select(dag.symbol(system::normal_sign_symbol(j)), dag.zero(), dag.integer(2), slides);
     s.outputs.push_back({"mode." + contact.name, contact.unilateral ? open_mode : slides, OutputKind::mode, j});
-    if (contact.unilateral)
-      s.outputs.push_back({"contact.restitution." + contact.name, contact.restitution, OutputKind::restitution, j});
+    if (!contact.unilateral) continue;
+    s.outputs.push_back({"contact.restitution." + contact.name, contact.restitution, OutputKind::restitution, j});
+    if (!contact.gram.empty() && contact.gram[0] != dag.one())
+      s.outputs.push_back({"contact.scale." + contact.name, dag.call(symbolic::Op::sqrt, contact.gram[0]),
+                           OutputKind::normal_scale, j});
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "analysis/inverse.hpp"
 #include "eomgen/model.hpp"
+#include "eomgen/motion_event.hpp"
 #include "eomgen/prepared_runs.hpp"
 #include "eomgen/validation.hpp"
 #include "pipeline/estimate_cost.hpp"
@@ -76,7 +77,7 @@ void take_result(const run::RunResult& from, Motion& to) {
   to.constraint_drift = from.constraint_drift;
   to.steps = from.statistics.steps;
   to.rhs_evaluations = from.statistics.rhs_evaluations;
-  for (const run::RunEvent& event : from.events) to.events.push_back({event.t, event.kind, event.name});
+  for (const run::RunEvent& event : from.events) to.events.push_back(motion_event(event));
 }
 
 }  // namespace

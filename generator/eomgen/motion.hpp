@@ -40,10 +40,20 @@ struct RunOptions {
   std::function<void(double t, std::span<const double> values)> row = {};
 };
 
+/// The impulse of one contact during an impact.
+struct ContactImpulse {
+  std::string contact;
+  double normal = 0;                  // N s, positive in compression
+  std::vector<double> friction = {};  // along the directions of slip, N s; zeros where the law of impacts has none
+  double work = 0;                    // of this impulse on the system, J
+};
+
 /// An event of a motion, such as an impact or a change of contact.
 struct MotionEvent {
-  double t;  // s
+  double t = 0;  // s
   std::string kind, name;
+  double work = 0;                            // of an impulse, an impact or a reset: the change of the energy, J
+  std::vector<ContactImpulse> impulses = {};  // of an impact: of all contacts that took part
 };
 
 /// A conserved quantity and its numerical drift.

@@ -8,6 +8,7 @@
 #include <eom/hybrid/stepwise_run.hpp>
 
 #include "eomgen/compiled_state.hpp"
+#include "eomgen/motion_event.hpp"
 #include "eomgen/validation.hpp"
 #include "model/names.hpp"
 #include "run/bind.hpp"
@@ -120,7 +121,7 @@ Advance Simulation::Data::advance(double t_end, bool one_step, const CallControl
     const work::DeferInterrupt kept;
     eom::hybrid::StepwiseRun::Piece piece{one_step, call.stopped(), {}};
     piece.event = [&result](const eom::hybrid::Event& event, std::span<const double>) {
-      result.events.push_back({event.t, event.kind, event.name});
+      result.events.push_back(motion_event(event));
     };
     const eom::Result end = run.advance(t_end, piece);
     result.outcome = eom::name(end.outcome);

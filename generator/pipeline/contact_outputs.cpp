@@ -18,6 +18,7 @@ std::vector<run::ContactOutputs> contact_outputs(const system::EquationSystem& s
       case OutputKind::friction_component: result[output.index].phi.push_back(output.name); break;
       case OutputKind::slip_slope: result[output.index].slopes[output.part].push_back(output.name); break;
       case OutputKind::restitution: result[output.index].restitution = output.name; break;
+      case OutputKind::normal_scale: result[output.index].normal_scale = output.name; break;
       default: break;
     }
   }
@@ -29,6 +30,7 @@ std::vector<std::string> output_names(const run::ContactOutputs& contact) {
   names.insert(names.end(), contact.phi.begin(), contact.phi.end());
   for (const std::vector<std::string>& slopes : contact.slopes) names.insert(names.end(), slopes.begin(), slopes.end());
   if (!contact.restitution.empty()) names.push_back(contact.restitution);
+  if (!contact.normal_scale.empty()) names.push_back(contact.normal_scale);
   return names;
 }
 

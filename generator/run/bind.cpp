@@ -50,8 +50,9 @@ void bind_outputs(const RunRequest& request, Problem& problem) {
     problem.integrals.push_back({place(outputs.psi), place(outputs.slopes)});
   for (const ContactOutputs& outputs : request.contacts) {
     problem.contacts.push_back(
-        {place(outputs.slip), place(outputs.slopes), place(outputs.phi), outputs.constraint, {}});
+        {place(outputs.slip), place(outputs.slopes), place(outputs.phi), outputs.constraint, {}, {}});
     if (!outputs.restitution.empty()) problem.contacts.back().restitution = place(outputs.restitution);
+    if (!outputs.normal_scale.empty()) problem.contacts.back().normal_scale = place(outputs.normal_scale);
   }
 }
 

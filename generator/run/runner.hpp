@@ -95,6 +95,7 @@ struct ContactOutputs {
   std::vector<std::string> phi;
   std::size_t constraint = 0;  // active constraint of a unilateral contact
   std::string restitution;     // of a unilateral contact
+  std::string normal_scale;    // |normal force| / |multiplier|; empty: 1
 };
 
 struct RunRequest {

@@ -52,6 +52,7 @@ enum class OutputKind : std::uint8_t {
   slip_slope,          // derivative of the slip of a contact with respect to each free rate, in order; part: tangent
   friction_component,  // of a contact; part: tangent
   restitution,         // of a contact
+  normal_scale,        // of a contact whose constraint is not a distance
   redundant,           // psi of a redundant constraint of Mechanics
   differential,        // derivatives of Mechanics::integrals: by the free coordinates in order, then by t
   magnitude,           // size of the terms of a conserved quantity; index: as in conserved_quantities

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any, Dict, Iterator, List, NamedTuple, Optional
+from typing import TYPE_CHECKING, Any, Dict, Iterator, List, NamedTuple, Optional, Sequence
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -46,12 +46,24 @@ class LeftOut(NamedTuple):
     why: str
 
 
+class ContactImpulse(NamedTuple):
+    """The impulse of one contact during an impact, in N s. ``friction``: along the directions of slip. ``work`` in J."""
+
+    contact: str
+    normal: float
+    friction: List[float]
+    work: float
+
+
 class Event(NamedTuple):
-    """An event of a motion, such as an impact. ``t`` in s."""
+    """An event of a motion, such as an impact. ``t`` in s. ``work``: the change of the energy in J by an impulse, an
+    impact or a reset. ``impulses``: of all contacts that took part in an impact."""
 
     t: float
     kind: str
     name: str
+    work: float = 0.0
+    impulses: Sequence[ContactImpulse] = ()
 
 
 class Quantity(NamedTuple):
@@ -328,7 +340,7 @@ class Motion(Table):
     def __init__(self, **values: Any) -> None:
         super().__init__(**values)
         self.invariants = [Invariant(**i) for i in values["invariants"]]
-        self.events = [Event(*e) for e in values["events"]]
+        self.events = list(values["events"])
 
     @property
     def is_complete(self) -> bool:

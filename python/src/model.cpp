@@ -27,10 +27,6 @@ py::list quantities(const std::vector<ExaminedQuantity>& list) {
   return list_of(list, [](const ExaminedQuantity& q) { return py::make_tuple(q.name, q.unit, q.value); });
 }
 
-py::list events(const std::vector<MotionEvent>& list) {
-  return list_of(list, [](const MotionEvent& e) { return py::make_tuple(e.t, e.kind, e.name); });
-}
-
 py::dict check(const Model& model, const Callbacks& callbacks) {
   const Examination found = call_library(callbacks, [&](auto& c) { return model.examine(c.control()); });
   py::dict result;
@@ -197,7 +193,7 @@ py::dict run(const Model& model, const py::dict& given, const py::object& row, c
   result["constraint_drift"] = motion.constraint_drift;
   result["steps"] = motion.steps;
   result["rhs_evaluations"] = motion.rhs_evaluations;
-  result["events"] = events(motion.events);
+  result["events"] = event_list(motion.events);
   result["certificate"] = motion.certificate;
   return result;
 }

@@ -154,12 +154,7 @@ void add_simulation(py::module_& module) {
       .def_readonly("steps", &Advance::steps)
       .def_readonly("rhs_evaluations", &Advance::rhs_evaluations)
       .def_property_readonly(
-          "events",
-          [](const Advance& a) {
-            const py::object type = py::module_::import("eomgen.records").attr("Event");
-            return list_of(a.events, [&](const MotionEvent& e) { return type(e.t, e.kind, e.name); });
-          },
-          "list of Event")
+          "events", [](const Advance& a) { return event_list(a.events); }, "list of Event")
       .def_property_readonly(
           "times", [](const Advance& a) { return array_of(a.times); }, "K times of rows, in s")
       .def_property_readonly(

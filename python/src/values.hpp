@@ -49,4 +49,15 @@ py::list list_of(const std::vector<T>& entries, Make&& make) {
   return result;
 }
 
+/// Records `Event` of Python (records.py).
+inline py::list event_list(const std::vector<MotionEvent>& events) {
+  const py::module_ records = py::module_::import("eomgen.records");
+  const py::object event = records.attr("Event"), impulse = records.attr("ContactImpulse");
+  return list_of(events, [&](const MotionEvent& e) {
+    return event(e.t, e.kind, e.name, e.work, list_of(e.impulses, [&](const ContactImpulse& one) {
+                   return impulse(one.contact, one.normal, one.friction, one.work);
+                 }));
+  });
+}
+
 }  // namespace eomgen::python

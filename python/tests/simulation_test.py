@@ -147,6 +147,9 @@ class SimulationTest(unittest.TestCase):
         end = ball.simulate().advance(ball.span[1])
         self.assertTrue(end.events)
         self.assertIn("contact", {event.kind for event in end.events})
+        impact = next(event for event in end.events if event.kind == "contact")
+        self.assertGreater(impact.impulses[0].normal, 0)
+        self.assertAlmostEqual(sum(one.work for one in impact.impulses), impact.work)
 
     def test_simulations_of_threads_are_independent(self):
         def run(results, k):

@@ -105,8 +105,8 @@ std::string text(const eom::hybrid::Invariant& i) {
 }
 std::string text(const eom::hybrid::IntegralOutputs& i) { return fmt::format("{{{}, {}}}", i.psi, text(i.slopes)); }
 std::string text(const eom::hybrid::ContactOutputs& c) {
-  return fmt::format("{{{}, {}, {}, {}, {}}}", text(c.slip), text(c.slopes), text(c.phi), c.constraint,
-                     text(c.restitution));
+  return fmt::format("{{{}, {}, {}, {}, {}{}}}", text(c.slip), text(c.slopes), text(c.phi), c.constraint,
+                     text(c.restitution), c.normal_scale ? ", " + text(c.normal_scale) : "");
 }
 std::string text(const eom::hybrid::ExchangedChart& c) {
   return fmt::format("{{{}, {}, {}, {}, {}, {}}}", text(c.of), text(c.angles), text(c.coordinates), c.guarded,

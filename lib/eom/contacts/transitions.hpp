@@ -40,6 +40,15 @@ class Transitions {
     std::size_t contact = none;  // for no_solution
   };
 
+  /// The impulse of a contact, summed over the collisions of an impact.
+  struct Impulse {
+    double lambda = 0;                 // along the normal row
+    std::array<double, 2> friction{};  // along the tangents
+    double work = 0;                   // impulse times J qdot, with the mean of the rates before and after
+  };
+  /// Of the last impact(), per contact.
+  const std::vector<Impulse>& impulses() const { return impulses_; }
+
   /// Impulses of the contacts in `touching` (indices) that approach one another; the rates in x change. Contacts in
   /// `plastic` do not bounce. `rest`: the speeds of all gaps become 0. `hit` receives those that had an impulse and
   /// approached.
@@ -48,6 +57,7 @@ class Transitions {
                 std::vector<std::size_t>& hit) {
     if (const int code = prepare(t, x, u); code != 0) return {Outcome::no_value, code, none};
     before_ = Eigen::Map<const Vector>(x + n_, static_cast<Index>(n_));
+    impulses_.assign(forces_.set().contacts.size(), {});
     if (rest) {  // first what the law does, then the speeds that are left of it
       const std::vector<bool> all(plastic.size(), true);
       const Result first = apply(t, x, u, touching, all, false, tolerances, hit);
@@ -145,7 +155,7 @@ class Transitions {
       if (!more.found) return {Outcome::no_solution, 0, rows.fastest_contact()};
       total += share + more.force;
     }
-    for (Index k = 0; k < count; ++k) Eigen::Map<Vector>(x + n_, static_cast<Index>(n_)) += total(k) * rows.response(k);
+    push(rows, total, x);
     for (Index i = 0; i < count; ++i) {
       const std::size_t j = rows.contact(i);
       if (rows.kind(i) != Kind::friction && forces_.contact(j).unilateral && approach(i) < -tolerances.speed &&
@@ -190,10 +200,26 @@ class Transitions {
     impulses(0) = found.normal;
     if (own > 1) impulses(1) = found.tangential;
     if (held > 0) impulses.tail(held) = reaction * impulses.head(own);
-    for (Index k = 0; k < rows.size(); ++k)
-      Eigen::Map<Vector>(x + n_, static_cast<Index>(n_)) += impulses(k) * rows.response(k);
+    push(rows, impulses, x);
     if (std::find(hit.begin(), hit.end(), j) == hit.end()) hit.push_back(j);
     return {};
+  }
+
+  /// Applies the impulses to the rates, and adds them to impulses().
+  void push(const ContactProblem& rows, const Vector& impulses, double* x) {
+    Eigen::Map<Vector> rates(x + n_, static_cast<Index>(n_));
+    const Vector before = rates;
+    for (Index k = 0; k < rows.size(); ++k) rates += impulses(k) * rows.response(k);
+    const Vector mean = (before + rates) / 2;
+    for (Index k = 0; k < rows.size(); ++k) {
+      const Description& at = forces_.contact(rows.contact(k));
+      Impulse& sum = impulses_[rows.contact(k)];
+      sum.work += impulses(k) * forces_.change(rows.row(k), mean);
+      if (&rows.row(k) == &at.normal)
+        sum.lambda += impulses(k);
+      else
+        sum.friction[static_cast<std::size_t>(&rows.row(k) - at.slip.data())] += impulses(k);
+    }
   }
 
   FrictionForces solve(const FrictionProblem& problem) {
@@ -329,6 +355,7 @@ class Transitions {
   std::size_t input_count_ = 0;
   double largest_residual_ = 0;
   Vector before_;  // rates at which the rows were evaluated
+  std::vector<Impulse> impulses_;
   std::array<double, 2> friction_before_{};
 };
 

@@ -14,8 +14,7 @@ inline EventAction Integration::change_contact(const EventPoint& point, const On
       context_.contacts->handle_event(point.t, point.x, crossing, context_.events.of_contacts(point.functions));
   context_.model.set_contact_mode(context_.contacts->mode());
   if (event) {
-    for (const ModeEvent& recorded : context_.contacts->recorded_events())
-      event({recorded.t, recorded.kind, recorded.name}, point.x);
+    for (const Event& recorded : context_.contacts->recorded_events()) event(recorded, point.x);
   }
   if (answer != EventAction::restart) return answer;
   context_.freeze_branches(point.t, point.x.data(), true);
@@ -30,7 +29,7 @@ inline EventAction Integration::change_solved_contact(const EventPoint& point, c
       point.t, point.x, crossing, context_.events.of_solved_contacts(point.functions));
   if (event) {
     for (const SolvedContacts::Change& change : context_.solved_contacts->changes())
-      event({point.t, change.kind, change.name, change.work}, point.x);
+      event({point.t, change.kind, change.name, change.work, change.impulses}, point.x);
   }
   if (answer == EventAction::restart) context_.freeze_branches(point.t, point.x.data(), true);
   return answer;

@@ -21,9 +21,9 @@ namespace eom::hybrid {
 
 class ContactModes {
  public:
-  /// `changed`: called after velocities change, with the state before and after.
-  using Changed = std::function<void(double t, std::span<const double> before, std::span<const double> after)>;
-  ContactModes(const Problem& problem, Model& model, ConstraintRows& rows, Changed changed);
+  /// `changed`: called after velocities change, with the state before and after. Returns the work.
+  using Changed = std::function<double(double t, std::span<const double> before, std::span<const double> after)>;
+  ContactModes(const Problem& problem, Model& model, ConstraintRows& rows, Changed changed, Energy energy);
 
   /// NaN is neither inside nor outside of a law.
   static int code_of(const double* g, std::size_t count) {
@@ -31,7 +31,7 @@ class ContactModes {
   }
   int mode() const { return switch_ ? switch_->mode : 0; }
   /// Determines the mode of a start. Returns events of contacts that start to slide or open at once.
-  std::vector<ModeEvent> start(double t, std::span<double> x);
+  std::vector<Event> start(double t, std::span<double> x);
   /// Not 0: a function needed at the start has no value; a code of the ABI.
   int start_code() const { return start_code_; }
 
@@ -51,7 +51,7 @@ class ContactModes {
   /// Handles a crossing of one of the functions and records its events.
   EventAction handle_event(double& t, std::span<double> x, const Crossing& crossing,
                            std::span<EventFunction> functions);
-  std::span<const ModeEvent> recorded_events() const { return recorded_; }
+  std::span<const Event> recorded_events() const { return recorded_; }
   /// The outcome, if a contact has ended the run.
   std::optional<Outcome> end_outcome() const;
   const std::string& detail() const { return switch_->detail; }
@@ -75,6 +75,16 @@ class ContactModes {
     std::vector<std::size_t> contacts;
     bool over = true;  // all bounces are lower than the accuracy of the gaps
   };
+  /// Changes the velocities by `move`, which returns a code, and reports the change.
+  template <class Move>
+  int change(double t, std::span<double> x, Move&& move) {
+    const std::vector<double> before(x.begin(), x.end());
+    const int code = move();
+    if (code == 0) work_ += changed_(t, before, x);
+    return code;
+  }
+  /// The transitions as events; the first impact has the work and the impulses since they were last cleared.
+  void record(std::span<const ModeEvent> transitions);
   /// Gaps up to this value are not known from 0: rounding of the terms of the gap, and of the coordinates.
   double gap_accuracy(double t, std::span<const double> x, std::size_t j) {
     return std::max(known_gap * largest_gap_, velocities_.gap_rounding(t, x, model_.inputs(t), j));
@@ -111,12 +121,13 @@ class ContactModes {
   int start_code_ = 0;               // of the evaluation of the restitutions
   double largest_gap_ = 0;           // of open contacts
   Changed changed_;
+  double work_ = 0;  // of the changes of velocities at the last crossing
   Rhs rhs_;
   Functions functions_;
   Rule rule_;
   std::vector<double> g_, k_, middle_;
   std::optional<modes::ModeSwitch<Rule>> switch_;
-  std::vector<ModeEvent> recorded_;  // of the last crossing
+  std::vector<Event> recorded_;  // of the last crossing
 };
 
 struct ContactModes::State {
@@ -145,11 +156,12 @@ inline void ContactModes::restore(const State& from) {
   switch_->set_chatter(from.chatter);
 }
 
-inline ContactModes::ContactModes(const Problem& problem, Model& model, ConstraintRows& rows, Changed changed)
+inline ContactModes::ContactModes(const Problem& problem, Model& model, ConstraintRows& rows, Changed changed,
+                                  Energy energy)
     : problem_(problem),
       model_(model),
       rows_(rows),
-      velocities_(problem, rows),
+      velocities_(problem, rows, std::move(energy)),
       changed_(std::move(changed)),
       rhs_{&model},
       functions_(model, problem.events.size() + problem.code->kinks.size(),
@@ -160,34 +172,22 @@ inline ContactModes::ContactModes(const Problem& problem, Model& model, Constrai
 }
 
 inline int ContactModes::Motion::impact(double t, std::span<double> x, int mode, std::size_t j, double e) const {
-  const std::vector<double> before(x.begin(), x.end());
-  const int code = self->velocities_.impact(t, x, self->model_.inputs(t), mode, j, e);
-  if (code == 0) self->changed_(t, before, x);
-  return code;
+  return self->change(t, x, [&] { return self->velocities_.impact(t, x, self->model_.inputs(t), mode, j, e); });
 }
 inline int ContactModes::Motion::close(double t, std::span<double> x, int mode) const {
-  const std::vector<double> before(x.begin(), x.end());
-  const int code = self->velocities_.close(t, x, self->model_.inputs(t), mode);
-  if (code == 0) self->changed_(t, before, x);
-  return code;
+  return self->change(t, x, [&] { return self->velocities_.close(t, x, self->model_.inputs(t), mode); });
 }
 inline int ContactModes::Motion::stick(double t, std::span<double> x, int mode, std::size_t j) const {
-  const std::vector<double> before(x.begin(), x.end());
-  const int code = self->velocities_.stick(t, x, self->model_.inputs(t), mode, j);
-  if (code == 0) self->changed_(t, before, x);
-  return code;
+  return self->change(t, x, [&] { return self->velocities_.stick(t, x, self->model_.inputs(t), mode, j); });
 }
 inline int ContactModes::Motion::slide(double t, std::span<double> x, int mode, std::size_t j) const {
-  const std::vector<double> before(x.begin(), x.end());
-  const int code = self->velocities_.slide(t, x, self->model_.inputs(t), mode, j);
-  if (code == 0) self->changed_(t, before, x);
-  return code;
+  return self->change(t, x, [&] { return self->velocities_.slide(t, x, self->model_.inputs(t), mode, j); });
 }
 inline double ContactModes::Motion::gap_rate(double t, std::span<const double> x, std::size_t j) const {
   return self->velocities_.gap_rate(t, x, self->model_.inputs(t), j);
 }
 
-inline std::vector<ModeEvent> ContactModes::start(double t, std::span<double> x) {
+inline std::vector<Event> ContactModes::start(double t, std::span<double> x) {
   const std::vector<Contact>& contacts = problem_.code->contacts;
   std::vector<double> g(rule_.functions());
   velocities_.reset();
@@ -218,13 +218,13 @@ inline std::vector<ModeEvent> ContactModes::start(double t, std::span<double> x)
   rows_.set_mode(mode);
   switch_.emplace(rule_.table(), rule_, mode);
   update_min_slip(t, x.data());
-  std::vector<ModeEvent> recorded;
+  std::vector<Event> recorded;
   for (std::size_t j = 0; j < contacts.size(); ++j) {
     const int digit = contact_digit(mode, j);
     const bool is_closed = !contacts[j].unilateral || digit < 3;
     if (contacts[j].sticks && is_closed && digit % 3 != 0 && slip[j] <= velocities_.negligible_speed())
-      recorded.push_back({t, "slip", contacts[j].name, 0, mode});
-    if (!is_closed && !open[j]) recorded.push_back({t, "lose_contact", contacts[j].name, 0, mode});
+      recorded.push_back({t, "slip", contacts[j].name});
+    if (!is_closed && !open[j]) recorded.push_back({t, "lose_contact", contacts[j].name});
   }
   return recorded;
 }
@@ -297,81 +297,11 @@ inline void ContactModes::shift_to_watched(double* g) {
   rule_.shift_to_watched(g);
 }
 
-/// Computes the deceleration of each gap in `mode`. False if the right-hand side has no value.
-inline bool ContactModes::compute_gap_decelerations(double t, std::span<double> x, int mode,
-                                                    std::vector<double>& result) {
-  k_.resize(x.size()), middle_.resize(x.size());
-  if (rhs_(t, x.data(), mode, k_.data()) != 0) return false;
-  constexpr double h = 1e-6;
-  for (std::size_t i = 0; i < x.size(); ++i) middle_[i] = x[i] + h * k_[i];
-  const Motion motion{this};
-  result.assign(problem_.code->contacts.size(), 0.0);
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    if (!problem_.code->contacts[i].unilateral) continue;
-    result[i] = (motion.gap_rate(t, x, i) - motion.gap_rate(t + h, middle_, i)) / h;
-  }
-  return true;
-}
-
-/// The other contacts that the last bounces of contact j, over after `time`, either open or reach by then (as in a
-/// corner).
-inline ContactModes::MetContacts ContactModes::contacts_met(double t, std::span<double> x, std::size_t j, double time) {
-  MetContacts result;
-  const std::vector<Contact>& contacts = problem_.code->contacts;
-  int open = mode();
-  for (std::size_t i = 0; i < contacts.size(); ++i)
-    if (contacts[i].unilateral) open = with_contact_digit(open, i, 3);
-  std::vector<double> fall, after(x.begin(), x.end());
-  if (!compute_gap_decelerations(t, x, open, fall) || functions_(t, x.data(), open, g_.data()) != 0 ||
-      velocities_.impact(t, after, model_.inputs(t), with_contact_digit(mode(), j, 0), j, restitution_[j]) != 0)
-    return result;
-  const Motion motion{this};
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    if (i == j || !contacts[i].unilateral) continue;
-    const bool is_closed = contact_digit(mode(), i) < 3;
-    const double known = gap_accuracy(t, x, i);
-    const double gap = is_closed ? 0 : g_[contact_values * i + 3], away = motion.gap_rate(t, after, i);
-    const bool alone = is_closed ? std::abs(away) <= velocities_.negligible_speed()
-                                 : gap > known && gap + (away - std::max(fall[i], 0.0) * time / 2) * time > 0;
-    if (alone) continue;
-    const double speed = std::max(std::abs(motion.gap_rate(t, x, i)), std::abs(away));
-    result.over = result.over && fall[i] > 0 && speed * speed / (2 * fall[i]) <= known;
-    result.contacts.push_back(i);
-  }
-  return result;
-}
-
-/// If the next bounce is lower than the accuracy of the gap, so are all later ones. They end after the sum of their
-/// times, during which the motion continues as it begins, and the contact stays closed. In a corner the other contacts
-/// close too once their bounces are as low; until then no bounce is skipped.
-inline void ContactModes::end_bounce_sequence(double& t, std::span<double> x, std::size_t j) {
-  const Motion motion{this};
-  const double e = restitution_[j], up = -e * motion.gap_rate(t, x, j);
-  std::vector<double> fall;
-  if (!(up > 0) || !compute_gap_decelerations(t, x, mode(), fall)) return;
-  if (!(fall[j] > 0) || up * up / (2 * fall[j]) > gap_accuracy(t, x, j)) return;
-  const double time = 2 * up / (fall[j] * (1 - e));
-  MetContacts met = contacts_met(t, x, j, time);
-  if (!met.contacts.empty()) {
-    if (!met.over) return;
-    met.contacts.push_back(j);
-    rule_.close_together(std::move(met.contacts));
-    return;
-  }
-  // One bounce of the total duration: it ends at height 0, so that the projection does no work.
-  const double as_one = e / (1 - e);
-  if (motion.impact(t, x, with_contact_digit(mode(), j, 0), j, as_one) != 0 ||
-      rhs_(t, x.data(), mode(), k_.data()) != 0)
-    return;
-  const std::size_t n = problem_.code->free.size();
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] += time * (k_[i] + (i < n ? time / 2 * k_[n + i] : 0));
-  t += time;
-  rule_.set_restitution(j, 0);
-}
-
 inline EventAction ContactModes::handle_event(double& t, std::span<double> x, const Crossing& crossing,
                                               std::span<EventFunction> functions) {
-  const auto before = static_cast<std::ptrdiff_t>(switch_->events.size());
+  const std::size_t before = switch_->events.size();
+  work_ = 0;
+  velocities_.clear_impulses();
   const std::size_t j = crossing.function / contact_values;
   const bool hits =
       crossing.function % contact_values == 3 && problem_.code->contacts[j].unilateral && contact_digit(mode(), j) >= 3;
@@ -381,8 +311,19 @@ inline EventAction ContactModes::handle_event(double& t, std::span<double> x, co
   if (e > 0) rule_.set_restitution(j, e);
   rows_.set_mode(switch_->mode);
   if (answer == EventAction::restart) update_min_slip(t, x.data());
-  recorded_.assign(switch_->events.begin() + before, switch_->events.end());
+  record(std::span(switch_->events).subspan(before));
   return answer;
+}
+
+inline void ContactModes::record(std::span<const ModeEvent> transitions) {
+  recorded_.clear();
+  std::vector<ContactImpulse> impulses = velocities_.impulses();
+  for (const ModeEvent& one : transitions) {
+    recorded_.push_back({one.t, one.kind, one.name});
+    if (one.kind != "contact" || impulses.empty()) continue;
+    recorded_.back().work = work_;
+    recorded_.back().impulses = std::exchange(impulses, {});
+  }
 }
 
 inline std::optional<Outcome> ContactModes::end_outcome() const {
@@ -391,3 +332,5 @@ inline std::optional<Outcome> ContactModes::end_outcome() const {
 }
 
 }  // namespace eom::hybrid
+
+#include "eom/hybrid/contact_bounces.hpp"  // the members that end sequences of bounces

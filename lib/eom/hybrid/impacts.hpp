@@ -14,6 +14,7 @@
 
 #include "eom/constraints/projection.hpp"
 #include "eom/hybrid/constraint_rows.hpp"
+#include "eom/hybrid/impact_work.hpp"
 
 namespace eom::hybrid {
 
@@ -22,13 +23,16 @@ inline constexpr double slow_slip_rtol = 1e-12, slow_slip_atol = 1e-15;
 
 class ContactVelocities {
  public:
-  ContactVelocities(const Problem& problem, ConstraintRows& rows);
+  ContactVelocities(const Problem& problem, ConstraintRows& rows, Energy energy);
 
   /// As in ContactMotion; u: the inputs at that time.
   int impact(double t, std::span<double> x, const double* u, int mode, std::size_t contact, double restitution);
   int close(double t, std::span<double> x, const double* u, int mode);
   int stick(double t, std::span<double> x, const double* u, int mode, std::size_t contact);
   int slide(double t, std::span<double> x, const double* u, int mode, std::size_t contact);
+  /// Of impact() and close() since clear_impulses(): one per contact that took part.
+  std::vector<ContactImpulse> impulses() const;
+  void clear_impulses() { impulses_.clear(); }
   double gap_rate(double t, std::span<const double> x, const double* u, std::size_t contact);
   /// Rounding errors of the gap of a contact, from the coordinates that it depends on.
   double gap_rounding(double t, std::span<const double> x, const double* u, std::size_t contact);
@@ -55,6 +59,7 @@ class ContactVelocities {
 
  private:
   int move(double t, std::span<double> x, const double* u);
+  void record_impulses(double t, std::span<const double> before, std::span<const double> x, const double* u);
 
   const Problem& problem_;
   ConstraintRows& rows_;
@@ -64,16 +69,19 @@ class ContactVelocities {
   double rtol_, atol_;
   double largest_slip_ = 0;
   ModeArray open_;  // all contacts open
+  Energy energy_;
+  std::vector<ContactImpulse> impulses_;  // per contact; empty: none yet
 };
 
-inline ContactVelocities::ContactVelocities(const Problem& problem, ConstraintRows& rows)
+inline ContactVelocities::ContactVelocities(const Problem& problem, ConstraintRows& rows, Energy energy)
     : problem_(problem),
       rows_(rows),
       projection_(problem.code->free.size(), rows.size(), 0),
       y_(problem.code->output_names.size()),
       rtol_(problem.rtol),
       atol_(problem.atol),
-      open_(problem.mode_layout()) {
+      open_(problem.mode_layout()),
+      energy_(std::move(energy)) {
   open_.set_contacts(open_mode(problem.code->contacts));
 }
 
@@ -170,12 +178,48 @@ inline int ContactVelocities::impact(double t, std::span<double> x, const double
     }
     if (!more) break;
   }
+  record_impulses(t, before, x, u);
   return 0;
 }
 
 inline int ContactVelocities::close(double t, std::span<double> x, const double* u, int mode) {
+  const std::vector<double> before(x.begin(), x.end());
   rows_.set_all_sliding(mode);
-  return move(t, x, u);
+  const int code = move(t, x, u);
+  if (code == 0) record_impulses(t, before, x, u);
+  return code;
+}
+
+// M (qdot after - qdot before) = A^T P. Friction has no impulse here.
+inline void ContactVelocities::record_impulses(double t, std::span<const double> before, std::span<const double> x,
+                                               const double* u) {
+  const auto n = static_cast<Eigen::Index>(problem_.code->free.size()), m = static_cast<Eigen::Index>(rows_.size());
+  Eigen::VectorXd psi(m), b(m), h(n);
+  Eigen::MatrixXd A(m, n), M(n, n);
+  if (rows_(t, x.data(), u, psi.data(), A.data(), b.data()) != 0 ||
+      problem_.code->mass(t, x.data(), problem_.parameters.data(), M.data(), h.data()) != 0)
+    return;
+  if (problem_.code->outputs(t, x.data(), problem_.parameters.data(), u, open_.data(), y_.data()) != 0) return;
+  const Eigen::Map<const Eigen::VectorXd> first(before.data() + n, n), last(x.data() + n, n);
+  const Eigen::VectorXd P = A.transpose().completeOrthogonalDecomposition().solve(M * (last - first));
+  Eigen::VectorXd mean = (first + last) / 2;
+  if (const std::optional<Eigen::VectorXd> frame = frame_rates(problem_, energy_, t, x)) mean += *frame;
+  const bool begins = impulses_.empty();
+  for (std::size_t j = 0; j < problem_.contacts.size(); ++j) {
+    const Contact& contact = problem_.code->contacts[j];
+    if (begins) impulses_.push_back({contact.name, 0, std::vector<double>(contact.dimensions, 0.0), 0});
+    if (!contact.unilateral) continue;
+    const auto row = static_cast<Eigen::Index>(rows_.row_of(j));
+    const std::optional<std::size_t>& scale = problem_.contacts[j].normal_scale;
+    impulses_[j].normal += (scale ? y_[*scale] : 1) * P(row);
+    impulses_[j].work += P(row) * A.row(row).dot(mean);
+  }
+}
+
+inline std::vector<ContactImpulse> ContactVelocities::impulses() const {
+  std::vector<ContactImpulse> result = impulses_;
+  erase_negligible(result);
+  return result;
 }
 
 inline int ContactVelocities::stick(double t, std::span<double> x, const double* u, int mode, std::size_t) {

@@ -219,8 +219,9 @@ inline bool Integration::start(Result& total, const OnEvent& event) {
     if (event) event({problem_.t0, "chart", whose}, total.x);
   }
   context_.rows.start(total.t, total.x.data(), context_.model.inputs(total.t));
-  for (const ModeEvent& recorded : context_.start_contacts(total.t, total.x)) {
-    if (event) event({problem_.t0, recorded.kind, recorded.name}, total.x);
+  for (Event& recorded : context_.start_contacts(total.t, total.x)) {
+    recorded.t = problem_.t0;
+    if (event) event(recorded, total.x);
   }
   if (context_.solved_contacts && context_.solved_contacts->end_outcome()) {
     total.outcome = *context_.solved_contacts->end_outcome();

@@ -53,8 +53,9 @@ struct ContactOutputs {
   std::vector<std::size_t> slip;
   std::vector<std::vector<std::size_t>> slopes;
   std::vector<std::size_t> phi;
-  std::size_t constraint = 0;                   // active one, of a unilateral contact
-  std::optional<std::size_t> restitution = {};  // of a unilateral contact
+  std::size_t constraint = 0;                    // active one, of a unilateral contact
+  std::optional<std::size_t> restitution = {};   // of a unilateral contact
+  std::optional<std::size_t> normal_scale = {};  // |normal force| / |multiplier|; none: 1
 };
 
 /// A chart that the run leaves near its singularity and returns to later.
@@ -198,13 +199,22 @@ struct Problem {
   std::size_t states() const { return code->layout().size() + (power ? 1 : 0); }
 };
 
+/// The impulse of a contact during an impact.
+struct ContactImpulse {
+  std::string contact;
+  double normal = 0;                  // in N s, positive in compression
+  std::vector<double> friction = {};  // along the tangents, in N s
+  double work = 0;                    // of this impulse on the system, in J
+};
+
 /// An event of a run: "custom", "stop", "reset", "chart", "pole", "impulse", "slide", "slide_end",
 /// "singular_configuration", or an event of a contact. "before_reset" and "sample" are not recorded: they show the
 /// state before a reset and after a sample.
 struct Event {
   double t = 0;
   std::string kind, name;
-  double work = 0;  // of an impulse or a reset: the change of the energy
+  double work = 0;                            // of an impulse, an impact or a reset: the change of the energy
+  std::vector<ContactImpulse> impulses = {};  // of an impact: of all contacts that took part
 };
 
 inline bool is_recorded(const Event& event) { return event.kind != "before_reset" && event.kind != "sample"; }

@@ -36,14 +36,15 @@ struct RunContext {
         start(own_start()),
         g(events.size()) {
     start_charts(problem.begin(), start);
-    const auto work_of = [this](double t, std::span<const double> before, std::span<const double> after) {
-      const double energy = outputs.energy(t, before.data());
-      const double work = outputs.energy(t, after.data()) - energy;
+    const auto energy = [this](double t, std::span<const double> x) { return outputs.energy(t, x.data()); };
+    const auto work_of = [this, energy](double t, std::span<const double> before, std::span<const double> after) {
+      const double first = energy(t, before);
+      const double work = energy(t, after) - first;
       impulse_work += work;
       return work;
     };
     if (!problem.code->contact_set.empty()) {
-      solved_contacts = std::make_unique<SolvedContacts>(problem, model, work_of);
+      solved_contacts = std::make_unique<SolvedContacts>(problem, model, work_of, energy);
       events.set_contacts(solved_contacts.get());
       rows.set_contacts(solved_contacts.get());
       g.resize(events.size());
@@ -51,10 +52,7 @@ struct RunContext {
       start_contacts(problem.begin(), x);
     }
     if (problem.code->contacts.empty()) return;
-    contacts = std::make_unique<ContactModes>(
-        problem, model, rows, [work_of](double t, std::span<const double> before, std::span<const double> after) {
-          work_of(t, before, after);
-        });
+    contacts = std::make_unique<ContactModes>(problem, model, rows, work_of, energy);
     std::vector<double> x = start;
     start_contacts(problem.begin(), x);  // sets the mode for observers of the start
   }
@@ -90,19 +88,19 @@ struct RunContext {
     return recorded;
   }
 
-  std::vector<ModeEvent> start_contacts(double t, std::span<double> x) {
+  std::vector<Event> start_contacts(double t, std::span<double> x) {
     if (solved_contacts) {
       impulse_work = 0;
-      std::vector<ModeEvent> recorded;
+      std::vector<Event> recorded;
       for (const SolvedContacts::Change& change : solved_contacts->start(t, x, problem.starts_open))
-        recorded.push_back({t, change.kind, change.name, 0, 0});
+        recorded.push_back({t, change.kind, change.name, change.work, change.impulses});
       solved_contacts->update(x.data());
       return recorded;
     }
     if (!contacts) return {};
     impulse_work = 0;
     model.reset_mode();  // a model with contacts does not exchange charts
-    std::vector<ModeEvent> recorded = contacts->start(t, x);
+    std::vector<Event> recorded = contacts->start(t, x);
     model.set_contact_mode(contacts->mode());
     return recorded;
   }

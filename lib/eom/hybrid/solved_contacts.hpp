@@ -21,6 +21,7 @@
 
 #include "eom/contacts/transitions.hpp"
 #include "eom/events/locator.hpp"
+#include "eom/hybrid/impact_work.hpp"
 #include "eom/hybrid/model.hpp"
 #include "eom/modes/machine.hpp"
 
@@ -32,12 +33,13 @@ class SolvedContacts {
   /// `changed`: called after velocities change, with the state before and after. Returns the work.
   using Changed = std::function<double(double t, std::span<const double> before, std::span<const double> after)>;
 
-  SolvedContacts(const Problem& problem, Model& model, Changed changed)
+  SolvedContacts(const Problem& problem, Model& model, Changed changed, Energy energy)
       : problem_(problem),
         model_(model),
         forces_(*model.contact_forces()),
         transitions_(forces_, problem.n()),
         changed_(std::move(changed)),
+        energy_(std::move(energy)),
         thresholds_(forces_, problem.n(), problem.rtol, problem.atol),
         hits_(size()) {
     transitions_.set_input_count(problem.inputs.size());
@@ -49,6 +51,7 @@ class SolvedContacts {
   struct Change {
     std::string kind, name;
     double work = 0;  // of an impact
+    std::vector<ContactImpulse> impulses = {};
   };
   const std::vector<Change>& changes() const { return changes_; }
   std::optional<Outcome> end_outcome() const { return end_; }
@@ -261,117 +264,20 @@ class SolvedContacts {
   }
 
   /// Adds open contacts that meet at the same time.
-  void add_touching(double t, std::span<double> x, std::vector<std::size_t>& touching) {
-    if (forces_.evaluate_rows(t, x.data(), model_.inputs_without_contacts(t)) != 0) return;
-    for (std::size_t i = 0; i < size(); ++i) {
-      const contacts::Description& at = forces_.contact(i);
-      if (!at.unilateral || forces_.is_closed(i) || std::find(touching.begin(), touching.end(), i) != touching.end())
-        continue;
-      if (forces_.value(at.gap) <= thresholds_.gap_rounding(i, x.data()) &&
-          forces_.rate(at.normal) < thresholds_.negligible_speed())
-        touching.push_back(i);
-    }
-    std::sort(touching.begin(), touching.end());
-  }
-
+  void add_touching(double t, std::span<double> x, std::vector<std::size_t>& touching);
   /// An infinite sequence of ever smaller bounces ends with lasting contact of all contacts that took turns.
-  void end_bounces(std::size_t j, std::vector<std::size_t>& touching, std::vector<bool>& plastic) {
-    constexpr std::size_t turns = 3;
-    constexpr double low = 1e-8;
-    chatter_.reset();
-    plastic[j] = true;
-    for (std::size_t i = 0; i < size(); ++i) {
-      const contacts::Description& at = forces_.contact(i);
-      if (i == j || !at.unilateral || forces_.is_closed(i) || hits_[i] < turns) continue;
-      if (forces_.value(at.gap) > low * thresholds_.sizes().gap[i]) continue;
-      plastic[i] = true;
-      if (std::find(touching.begin(), touching.end(), i) == touching.end()) touching.push_back(i);
-    }
-    std::sort(touching.begin(), touching.end());
-  }
-
+  void end_bounces(std::size_t j, std::vector<std::size_t>& touching, std::vector<bool>& plastic);
   /// A bounce lower than the rounding of the gap is none. If all motion of contacts that meet is lower, they come to
   /// rest together with those whose gaps are no larger (a box that rocks on its edges). Returns whether they do.
-  bool stop_low_bounces(double t, std::span<double> x, std::vector<std::size_t>& touching, std::vector<bool>& plastic) {
-    constexpr double roundings = 10;
-    contacts::ContactForces::Vector qddot;
-    if (forces_.evaluate_accelerations(t, x.data(), model_.inputs_without_contacts(t), qddot) != 0) return false;
-    bool meets = false, rest = true;
-    for (const std::size_t i : touching) {
-      const contacts::Description& at = forces_.contact(i);
-      // A contact at rest may approach later in a sequence of impacts.
-      if (!at.unilateral || !(forces_.rate(at.normal) < -thresholds_.negligible_speed())) continue;
-      const double speed = -forces_.rate(at.normal), away = speed * forces_.value(at.restitution);
-      const double back = -forces_.acceleration(at.normal, qddot);
-      const double known = roundings * thresholds_.gap_rounding(i, x.data());
-      if (away > 0 && back > 0 && away * away / (2 * back) <= known) plastic[i] = true;
-      if (away <= thresholds_.negligible_speed()) plastic[i] = true;
-      meets = true;
-      rest = rest && back > 0 && speed * speed / (2 * back) <= known;
-    }
-    if (!meets || !rest) return false;
-    for (std::size_t i = 0; i < size(); ++i) {
-      const contacts::Description& at = forces_.contact(i);
-      if (!at.unilateral || std::find(touching.begin(), touching.end(), i) != touching.end()) continue;
-      if (forces_.value(at.gap) <= roundings * thresholds_.gap_rounding(i, x.data())) touching.push_back(i);
-    }
-    std::sort(touching.begin(), touching.end());
-    return true;
-  }
-
+  bool stop_low_bounces(double t, std::span<double> x, std::vector<std::size_t>& touching, std::vector<bool>& plastic);
   /// Impulses of contacts that approach, then new modes.
   void meet(double t, std::span<double> x, const std::vector<std::size_t>& touching, std::vector<bool> plastic,
-            bool rest, const contacts::Hint& hint) {
-    plastic.resize(size(), false);
-    const std::vector<contacts::ContactState> before = forces_.states();
-    const std::vector<double> state(x.begin(), x.end());
-    std::vector<std::size_t> hit;
-    contacts::Transitions::Result result;
-    if (forces_.evaluate_rows(t, x.data(), model_.inputs_without_contacts(t)) == 0 && approaches(touching))
-      result = transitions_.impact(t, x.data(), model_.inputs_without_contacts(t), touching, plastic, rest,
-                                   thresholds_.tolerances(), hit);
-    if (result.outcome == contacts::Transitions::Outcome::done)
-      result =
-          transitions_.decide(t, x.data(), model_.inputs_without_contacts(t), touching, hint, thresholds_.tolerances());
-    model_.forget_contact_forces();
-    if (result.outcome != contacts::Transitions::Outcome::done) {
-      using Result = contacts::Transitions::Outcome;
-      end_ = result.outcome == Result::no_value  ? outcome_of_abi_code(result.code)
-             : result.outcome == Result::endless ? Outcome::step_too_small
-                                                 : Outcome::friction_no_solution;
-      end_contact_ = result.contact;
-      return;
-    }
-    double work = 0;
-    if (!hit.empty()) work = changed_(t, state, x);
-    report(before, hit, work);
-  }
-  bool approaches(const std::vector<std::size_t>& touching) const {
-    return std::any_of(touching.begin(), touching.end(), [&](std::size_t j) {
-      const contacts::Description& at = forces_.contact(j);
-      return at.unilateral && forces_.rate(at.normal) < -thresholds_.negligible_speed();
-    });
-  }
-
-  void report(const std::vector<contacts::ContactState>& before, const std::vector<std::size_t>& hit, double work) {
-    using contacts::Mode;
-    for (const std::size_t j : hit) {
-      ++hits_[j];
-      changes_.push_back({"contact", name(j), std::exchange(work, 0.0)});
-    }
-    for (std::size_t j = 0; j < size(); ++j) {
-      const contacts::Description& at = forces_.contact(j);
-      const Mode from = before[j].mode, to = forces_.states()[j].mode;
-      const bool was_hit = std::find(hit.begin(), hit.end(), j) != hit.end();
-      if (from == Mode::open && to != Mode::open && !was_hit) changes_.push_back({"contact", name(j)});
-      if (from != Mode::open && to == Mode::open && !was_hit) changes_.push_back({"lose_contact", name(j)});
-      if (from == Mode::open || to == Mode::open || !at.sticks || from == to) continue;
-      const char* const kind = to == Mode::closed     ? at.rolls ? "roll" : "stick"
-                               : from == Mode::closed ? "slip"
-                                                      : "reverse";
-      changes_.push_back({kind, name(j)});
-    }
-  }
+            bool rest, const contacts::Hint& hint);
+  bool approaches(const std::vector<std::size_t>& touching) const;
+  /// The impulses of the last impact, which ended in the state x.
+  std::vector<ContactImpulse> impulses(double t, std::span<const double> x);
+  void report(const std::vector<contacts::ContactState>& before, const std::vector<std::size_t>& hit, double work,
+              std::vector<ContactImpulse> impulses);
 
   /// False after many changes at the same time.
   bool progresses(double t) {
@@ -386,6 +292,7 @@ class SolvedContacts {
   contacts::ContactForces& forces_;
   contacts::Transitions transitions_;
   Changed changed_;
+  Energy energy_;
   contacts::Thresholds thresholds_;
   std::vector<std::size_t> hits_;  // number of impacts
   modes::ChatterDetector chatter_;
@@ -397,3 +304,5 @@ class SolvedContacts {
 };
 
 }  // namespace eom::hybrid
+
+#include "eom/hybrid/solved_contact_changes.hpp"  // the members that change modes
