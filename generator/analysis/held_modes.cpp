@@ -123,20 +123,13 @@ std::vector<HeldMode> held_modes(const mechanics::Mechanics& m, const std::map<s
   return result;
 }
 
-std::unique_ptr<linear::Flow> flow_in_modes(const std::string& command, SteadyProblem& p,
-                                            const std::vector<HeldMode>& modes) {
-  pipeline::DerivedModel& d = *p.derived;
-  try {
-    return std::make_unique<linear::Flow>(d.mechanics, p.system(), modes);
-  } catch (const std::domain_error& error) {
-    throw Error(command, {d.model.file, 0, 0, 1, ""}, error.what(),
-                "take a state at which it sticks: linearisation is not implemented for this mode");
-  }
+std::unique_ptr<linear::Flow> flow_in_modes(SteadyProblem& p, const std::vector<HeldMode>& modes) {
+  return std::make_unique<linear::Flow>(p.derived->mechanics, p.system(), modes);
 }
 
-void hold_contacts(const std::string& command, SteadyProblem& p, std::vector<HeldMode> modes) {
+void hold_contacts(SteadyProblem& p, std::vector<HeldMode> modes) {
   for (std::size_t attempt = 0; attempt <= modes.size(); ++attempt) {
-    p.flow = flow_in_modes(command, p, modes);
+    p.flow = flow_in_modes(p, modes);
     try {
       p.setting.leaf = p.flow->leaf(p.z, p.setting);
       const linear::Field<Precise> field = p.flow->at(p.z, p.setting);

@@ -17,14 +17,12 @@ namespace eomgen::analysis {
 std::vector<linear::HeldMode> held_modes(const mechanics::Mechanics& mechanics,
                                          const std::map<std::string, double>& reported);
 
-/// The vector field of the equations with contacts in these modes. Throws Error{stage `command`} if a contact slides on
-/// a curve.
-std::unique_ptr<linear::Flow> flow_in_modes(const std::string& command, SteadyProblem& problem,
-                                            const std::vector<linear::HeldMode>& modes);
+/// The vector field of the equations with contacts in these modes.
+std::unique_ptr<linear::Flow> flow_in_modes(SteadyProblem& problem, const std::vector<linear::HeldMode>& modes);
 
 /// Sets problem.flow with the contacts held. Signs of the normal forces of contacts that cannot open follow from the
 /// state of the problem.
-void hold_contacts(const std::string& command, SteadyProblem& problem, std::vector<linear::HeldMode> modes);
+void hold_contacts(SteadyProblem& problem, std::vector<linear::HeldMode> modes);
 
 /// Throws Error{stage `command`} if the state lies on the border of two modes: a contact that carries no force,
 /// friction at its limit, slip that begins.

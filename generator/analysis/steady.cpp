@@ -296,7 +296,7 @@ SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const m
   put_cheapest_first(d);
   p.certificate = certified(d, seed);
   const std::vector<linear::HeldMode> modes = held_modes(d.mechanics, state.modes);
-  p.flow = flow_in_modes(command, p, modes);
+  p.flow = flow_in_modes(p, modes);
   for (const auto* values : {&state.q, &state.qdot}) {
     for (const std::uint32_t i : p.system().free) p.z.push_back(linear::number<Precise>(numeric::exact((*values)[i])));
   }
@@ -317,7 +317,7 @@ SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const m
                 "start elsewhere");
   }
   if (!modes.empty()) {
-    hold_contacts(command, p, modes);
+    hold_contacts(p, modes);
     require_inside_modes(command, p);
   }
   for (const mechanics::Contact& contact : all) {

@@ -7,6 +7,7 @@
 #include <span>
 #include <type_traits>
 
+#include "linear/flow_numbers.hpp"
 #include "model/units.hpp"
 
 namespace eomgen::linear {
@@ -14,18 +15,6 @@ namespace eomgen::linear {
 using symbolic::SymbolKind;
 
 namespace {
-
-// Rank tolerance of a scaled matrix: far above rounding, far below values in mechanical systems.
-template <class T>
-T singular();
-template <>
-double singular<double>() {
-  return 1e-12;
-}
-template <>
-Precise singular<Precise>() {
-  return tiny<Precise>(60);
-}
 
 /// A smaller pivot of M and A means that the coordinates are singular: it is the square of the distance from there, in
 /// units of the coordinates, and a state is known to 16 digits.
@@ -38,12 +27,6 @@ constexpr double largest_rounding = 1e-6;
 
 /// The place of a discrete value, which is no entry of the state.
 constexpr auto discrete = std::numeric_limits<std::size_t>::max();
-
-/// Most derivatives are 0.
-template <class T>
-void subtract(T& sum, const T& jacobian, const T& by) {
-  if (!is_zero(jacobian)) sum = sum - jacobian * by;
-}
 
 /// States that move: discrete values, the last ones, stand still between events.
 std::span<const system::FirstOrderState> moving_states(const system::EquationSystem& s) {
@@ -109,6 +92,15 @@ Flow::Flow(mechanics::Mechanics& m, const system::EquationSystem& s, const std::
     for (const std::uint32_t k : s.active) forces_.push_back({SymbolKind::multiplier, k, 0});
   }
   roots.insert(roots.end(), rates.begin(), rates.end());
+  curve_roots_ = roots.size();
+  for (const HeldCurve& curve : held.curves) {
+    curves_.push_back(curve.name);
+    for (std::size_t k = 0; k < 2; ++k) {
+      roots.insert(roots.end(), curve.slopes[k].begin(), curve.slopes[k].end());
+      roots.push_back(curve.constant[k]);
+    }
+    roots.insert(roots.end(), curve.gram.begin(), curve.gram.end());
+  }
   for (const mechanics::ConstraintIntegral& integral : m.integrals) leaf_.push_back(integral.psi);
   for (const std::size_t k : holonomic_) phi_expressions_.push_back(s.psi[k]);
   phi_expressions_.insert(phi_expressions_.end(), held.gaps.begin(), held.gaps.end());
@@ -144,6 +136,7 @@ std::function<T(const Symbol&)> Flow::lookup(const State<T>& z, const Setting<T>
       case SymbolKind::state:
         return state_place_[s.index] == discrete ? setting.held[s.index] : z[state_place_[s.index]];
       case SymbolKind::time: return z[entries()];
+      case SymbolKind::auxiliary: return setting.curves[s.index];
       case SymbolKind::coordinate:
         if (s.order < 2) return z[place_[s.index] + (s.order == 0 ? 0 : n_)];
         break;
@@ -164,13 +157,13 @@ std::vector<T> Flow::leaf(const State<T>& z, const Setting<T>& setting) const {
 
 template <class T>
 Field<T> Flow::at(const State<T>& z, const Setting<T>& setting) const {
-  const ValueAndJacobian<T> s = value_and_jacobian(*tape_, z, setting);
   Field<T> field;
   if (held_) {
-    differentiate_held(s, z, field);
+    differentiate_held(held_values(z, setting), z, field);
     constrain_held(z, setting, field);
     return field;
   }
+  const ValueAndJacobian<T> s = value_and_jacobian(*tape_, z, setting);
   differentiate(s, z, field);
   const std::size_t A0 = n_ * n_ + n_, b0 = A0 + m_ * n_ + m_;
   constrain(s, {A0, b0, b0 + m_}, z, setting, field);
@@ -322,57 +315,6 @@ void Flow::fill_first_order(const ValueAndJacobian<T>& s, std::size_t rates, Fie
     for (std::size_t u = 0; u < inputs_; ++u)
       field.input_jacobian(first_order + k, u) = s.jacobian(rates + k, N + 1 + u);
   }
-}
-
-// P y + c = 0, and along every direction d P y' = -c' - P' y.
-template <class T>
-void Flow::differentiate_held(const ValueAndJacobian<T>& s, const State<T>& z, Field<T>& field) const {
-  const std::size_t size = n_ + forces_.size(), c0 = size * size, count = directions_.size();
-  Matrix<T> P(size, size), right(size, 1), rates(size, count);
-  for (std::size_t i = 0; i < size; ++i) {
-    for (std::size_t j = 0; j < size; ++j) P(i, j) = s.value[i * size + j];
-    right(i, 0) = -s.value[c0 + i];
-  }
-  const Elimination<T> solver(P, singular<T>());
-  const Matrix<T> open = solver.null_space();
-  field.undetermined = Matrix<T>(forces_.size(), open.cols);
-  for (std::size_t k = 0; k < open.cols; ++k) {
-    for (std::size_t i = 0; i < n_; ++i)
-      require_domain(magnitude(open(i, k)) <= singular<T>(), "the accelerations are not determined");
-    for (std::size_t i = 0; i < forces_.size(); ++i) field.undetermined(i, k) = open(n_ + i, k);
-  }
-  const Matrix<T> y = solver.solve(right);
-  for (std::size_t d = 0; d < count; ++d) {
-    for (std::size_t i = 0; i < size; ++i) {
-      T sum = -s.jacobian(c0 + i, d);
-      for (std::size_t j = 0; j < size; ++j) subtract(sum, s.jacobian(i * size + j, d), y(j, 0));
-      rates(i, d) = sum;
-    }
-  }
-  const Matrix<T> jacobian = solver.solve(rates);
-  fill(y, jacobian, z, field);
-  fill_first_order(s, c0 + size, field);
-  if constexpr (std::is_same_v<T, double>) {  // the accelerations vanish where the forces of inertia do
-    field.inertia_force = Matrix<T>(n_, 1);
-    field.inertia_force_jacobian = Matrix<T>(n_, entries() + 1);
-    for (std::size_t i = 0; i < n_; ++i) {
-      field.inertia_force(i, 0) = y(i, 0);
-      for (std::size_t d = 0; d < entries() + 1; ++d) field.inertia_force_jacobian(i, d) = jacobian(i, d);
-    }
-  }
-}
-
-template <class T>
-void Flow::constrain_held(const State<T>& z, const Setting<T>& setting, Field<T>& field) const {
-  const ValueAndJacobian<T> s = value_and_jacobian(*constraint_tape_, z, setting);
-  const std::size_t rows = phi_expressions_.size(), leaf0 = position_constraints_ - leaf_.size();
-  field.phi = Matrix<T>(rows, 1);
-  field.phi_jacobian = Matrix<T>(rows, entries() + 1);
-  for (std::size_t k = 0; k < rows; ++k) {
-    field.phi(k, 0) = s.value[k];
-    for (std::size_t d = 0; d < entries() + 1; ++d) field.phi_jacobian(k, d) = s.jacobian(k, d);
-  }
-  for (std::size_t k = 0; k < leaf_.size(); ++k) field.phi(leaf0 + k, 0) = s.value[leaf0 + k] - setting.leaf.at(k);
 }
 
 template <class T>

@@ -22,8 +22,9 @@ using State = std::vector<T>;
 template <class T>
 struct Setting {
   std::vector<T> parameters, inputs;
-  std::vector<T> held;  // per Model::states: integrals of functions of time, discrete values; 0 for other states
-  std::vector<T> leaf;  // values of the integrals of constraints on velocities
+  std::vector<T> held;         // per Model::states: integrals of functions of time, discrete values; 0 for other states
+  std::vector<T> leaf;         // values of the integrals of constraints on velocities
+  std::vector<T> curves = {};  // HeldCurve::tangent of each; Flow::at computes them
 };
 
 template <class T>
@@ -91,6 +92,12 @@ class Flow {
   template <class T>
   Matrix<T> matrix(const ValueAndJacobian<T>& s) const;
   template <class T>
+  ValueAndJacobian<T> held_values(const State<T>& z, const Setting<T>& setting) const;
+  template <class T>
+  std::vector<T> tangents(const ValueAndJacobian<T>& s) const;
+  template <class T>
+  Elimination<T> eliminate_held(const ValueAndJacobian<T>& s, Matrix<T>& right) const;
+  template <class T>
   void differentiate_held(const ValueAndJacobian<T>& s, const State<T>& z, Field<T>& field) const;
   template <class T>
   void fill(const Matrix<T>& y, const Matrix<T>& jacobian, const State<T>& z, Field<T>& field) const;
@@ -112,6 +119,8 @@ class Flow {
   bool held_ = false;  // the system has contacts
   std::vector<HeldContact> contacts_;
   std::vector<Symbol> forces_;
+  std::vector<std::string> curves_;  // names of the contacts that slide on curves
+  std::size_t curve_roots_ = 0;      // of tape_: where those of the curves begin
   std::vector<Ref> leaf_;
   std::vector<Ref> phi_expressions_;
   std::vector<std::string> names_;

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "linear/held_equations.hpp"
 
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <map>
-#include <stdexcept>
 
 #include "symbolic/calculus.hpp"
 
@@ -62,13 +60,15 @@ class Builder {
   }
 
   /// A row that vanishes, linear in the unknowns.
-  void add_row(Ref row) {
+  void add_row(Ref row) { result_.constant.push_back(split(row, result_.matrix)); }
+  /// Appends the slopes by the unknowns to `slopes`. Returns the value where the unknowns are 0.
+  Ref split(Ref row, std::vector<Ref>& slopes) {
     std::map<Symbol, Ref> none;
     for (const Symbol& y : unknowns_) {
-      result_.matrix.push_back(symbolic::partial_derivative(dag_, y)(row));
+      slopes.push_back(symbolic::partial_derivative(dag_, y)(row));
       none[y] = dag_.zero();
     }
-    result_.constant.push_back(symbolic::Substitution(dag_, none)(row));
+    return symbolic::Substitution(dag_, none)(row);
   }
 
   HeldContact begin(std::size_t j, bool unilateral) {
@@ -94,13 +94,12 @@ class Builder {
       held.normal = signed_by(held.held.normal_sign, dag_.mul(scale, s_.reactions[c.reactions[0]].value));
     } else if (c.reactions.empty()) {
       held.normal = dag_.call(symbolic::Op::abs, c.normal);
-    } else if (held.sticks()) {
-      held.normal = length(c);
     } else {
-      throw std::domain_error(
-          fmt::format("'{}' slides on a curve, and its normal force is the length of a vector", c.name));
+      held.normal = length(c);
+      if (!held.sticks()) return add_friction(held, c.slip_rate, c.dynamic_coefficient, c.width, tangent_of_length(c));
     }
-    add_friction(held, c.slip_rate, c.dynamic_coefficient, c.width);
+    const Ref normal = held.normal;
+    add_friction(held, c.slip_rate, c.dynamic_coefficient, c.width, normal);
   }
 
   void add(std::size_t j, const system::ContactWithInputs& c) {
@@ -118,18 +117,20 @@ class Builder {
     }
     std::vector<Ref> rates;
     for (const system::ContactRow& row : c.slip) rates.push_back(dag_.add(times(row.slopes, 0), row.bias));
-    add_friction(held, rates, c.dynamic_coefficient, c.width);
+    const Ref normal = held.normal;
+    add_friction(held, rates, c.dynamic_coefficient, c.width, normal);
   }
 
+  /// `normal`: the normal force, linear in the unknowns.
   void add_friction(HeldContact& held, const std::vector<Ref>& slip_rates, Ref coefficient,
-                    const std::optional<Ref>& width) {
+                    const std::optional<Ref>& width, Ref normal) {
     for (std::size_t a = 0; a < held.slip.size(); ++a) {
       if (held.sticks()) {
         add_row(slip_rates[a]);
         result_.slips.push_back(held.slip[a]);
       } else {
         const Ref drag = dag_.mul(coefficient, direction(held, a, width));
-        add_row(dag_.add(held.friction[a], dag_.mul(drag, held.normal)));
+        add_row(dag_.add(held.friction[a], dag_.mul(drag, normal)));
       }
     }
     result_.contacts.push_back(std::move(held));
@@ -151,6 +152,27 @@ class Builder {
       square = dag_.add(square, dag_.mul(c.gram[k], product));
     }
     return dag_.call(symbolic::Op::sqrt, square);
+  }
+
+  /// As in HeldCurve.
+  Ref tangent_of_length(const system::Contact& c) {
+    HeldCurve curve{c.name, {}, {}, {}, {}};
+    const auto first = static_cast<std::uint32_t>(3 * result_.curves.size());
+    for (std::uint32_t k = 0; k < 3; ++k) curve.tangent[k] = {SymbolKind::auxiliary, first + k, 0};
+    std::copy_n(c.gram.begin(), 4, curve.gram.begin());
+    Ref linear = dag_.zero(), square = dag_.integer(-1);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Ref reaction = s_.reactions[c.reactions[k]].value, u = dag_.symbol(curve.tangent[k]);
+      curve.constant[k] = split(reaction, curve.slopes[k]);
+      for (std::size_t l = 0; l < 2; ++l) {
+        const Ref other = dag_.mul(c.gram[2 * l + k], dag_.symbol(curve.tangent[l]));
+        linear = dag_.add(linear, dag_.mul(other, reaction));
+        square = dag_.add(square, dag_.mul(other, u));
+      }
+    }
+    const Ref half = dag_.div(dag_.symbol(curve.tangent[2]), dag_.integer(2));
+    result_.curves.push_back(std::move(curve));
+    return dag_.sub(linear, dag_.mul(half, square));
   }
 
   Ref signed_by(int sign, Ref value) { return sign < 0 ? dag_.neg(value) : value; }

@@ -37,6 +37,9 @@ inline Precise tiny<Precise>(int exponent) {
 using numeric::is_zero;
 using numeric::magnitude;
 
+inline double root(double x) { return std::sqrt(x); }
+inline Precise root(const Precise& x) { return cln::sqrt(x); }
+
 inline double to_double(double x) { return x; }
 /// 0 below the normal numbers, where CLN would throw.
 inline double to_double(const Precise& x) {

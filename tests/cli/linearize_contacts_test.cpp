@@ -103,6 +103,35 @@ TEST_CASE("linearize: the normal force of a curved surface depends on the state,
   CHECK(found["modes"] == Json({{"bowl", "slides"}}));
 }
 
+TEST_CASE("linearize: sliding on a curve, whose normal force has two components") {
+  const Folder folder;
+  // m R/cos(a) theta'' = -m g sin(a) - mu |N| along the wire, N = m (R theta'^2, g cos(a)).
+  const Json helix = document(folder, {"linearize", "P8_rough_helix"});
+  CHECK(helix["modes"] == Json({{"wire", "slides"}}));
+  const double g = 9.81, R = 0.8, pitch = 0.3, mu = 0.2, v = 4;
+  const double cosine = 1 / std::sqrt(1 + pitch * pitch), across = g * cosine, out = R * v * v;
+  const double by_v = -mu * 2 * R * v * out / std::hypot(out, across) * cosine / R;
+  CHECK(entry(helix, "A", 1, 0) == 0);
+  CHECK(entry(helix, "A", 1, 1) == doctest::Approx(by_v).epsilon(1e-13));
+
+  // A parabola, given by two surfaces that are not at right angles: as the bowl above, in x.
+  const std::string wire =
+      "format = 1\n[parameters]\nm = 2\ng = 9.81\na = 1.5\nmu = 0.2\n[[particle]]\nname = \"P\"\nmass = \"m\"\n"
+      "position = { cartesian = [\"x\", \"y\", \"z\"] }\n[[force]]\ngravity = \"-g*E2\"\n[[constraint]]\nname = "
+      "\"wire\"\nholonomic = [\"dot(P, E2) - a/2*dot(P, E1)^2 + dot(P, E3)*(1 + dot(P, E1))\", \"dot(P, E3)*(2 + "
+      "dot(P, E1))\"]\nfriction = { static = \"mu\", dynamic = \"mu\" }\n[scene.default]\nt = [0, 1]\ninitial = { x = "
+      "0.3, x_dot = 0.7, y = 0.0675, y_dot = 0.315, z = 0 }\n";
+  const Json found = linearised(folder, wire);
+  REQUIRE(found["states"] == Json({"y", "y_dot"}));
+  const double a = 1.5, x = 0.3, w = 0.7, below = 1 + a * a * x * x;
+  const double above = -g * a * x - a * a * x * w * w - mu * (g + a * w * w);
+  const double by_x = (-g * a - a * a * w * w) / below - above * 2 * a * a * x / (below * below);
+  const double by_w = (-2 * a * a * x * w - 2 * mu * a * w) / below;
+  const double of_x = a * above / below + a * x * by_x, of_w = 2 * a * w + a * x * by_w;
+  CHECK(entry(found, "A", 1, 0) == doctest::Approx((of_x - of_w * w / x) / (a * x)).epsilon(1e-13));
+  CHECK(entry(found, "A", 1, 1) == doctest::Approx(of_w / (a * x)).epsilon(1e-13));
+}
+
 TEST_CASE("linearize: a surface that holds from both sides may pull, and its friction has the size of the force") {
   const Folder folder;
   std::string text = block(coulomb, "initial = { x = 0.1, x_dot = 0.5, y = 0 }\noutputs = [\"reaction.floor\"]\n");
