@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace eomgen::run {
 
@@ -57,6 +58,26 @@ void change_contacts(VariationalEquations& in, const eom::Crossing& crossing, do
   if (ended) refuse_derivative(fmt::format("a contact ends the run at t = {}", t));
 }
 
+std::optional<SlipBound> bound_of_slip(VariationalEquations& in, const eom::Crossing& crossing, double t,
+                                       const std::vector<double>& x) {
+  if (!in.context.contacts) return std::nullopt;
+  SlipBound bound;
+  const std::size_t function = crossing.function - in.context.events.first_contact();
+  bound.contact = function / eom::contact_values;
+  const eom::Contact& contact = in.problem.code->contacts[bound.contact];
+  if (!contact.sticks || contact.dimensions != 2 || function % eom::contact_values > 2) return std::nullopt;
+  bound.ends = eom::contact_digit(in.context.contacts->mode(), bound.contact) % 3 != 0;
+  if (bound.ends) bound.along = slip_of(in, bound.contact, t, x);
+  return bound;
+}
+
+std::array<double, 2> slip_of(VariationalEquations& in, std::size_t contact, double t, const std::vector<double>& x) {
+  const std::vector<std::size_t>& places = in.problem.contacts[contact].slip;
+  std::vector<double> y(in.problem.code->output_names.size());
+  if (in.context.outputs(t, x.data(), y) != 0) return {std::nan(""), std::nan("")};
+  return {y[places[0]], y[places[1]]};
+}
+
 std::string ended_bounces(const VariationalEquations& in, const ContactSnapshot& before, const ContactSnapshot& after) {
   constexpr std::size_t several = 3;  // as where a run ends such a sequence (solved_contacts.hpp)
   if (before.modes && after.modes) {
@@ -79,12 +100,11 @@ std::string ended_bounces(const VariationalEquations& in, const ContactSnapshot&
 }
 
 std::string unfollowed_contacts(const RunRequest& request) {
-  const auto two = [](const auto& contact) { return contact.sticks && contact.dimensions == 2; };
-  for (const eom::Contact& contact : request.code.contacts) {
-    if (two(contact)) return fmt::format("'{}' slides in two directions", contact.name);
-  }
+  // Their right-hand sides are differentiated by differences, which are wider than slip that ends.
   for (const eom::contacts::Description& contact : request.code.contact_set.contacts) {
-    if (contact.sticks && contact.slip.size() == 2) return fmt::format("'{}' slides in two directions", contact.name);
+    if (contact.sticks && contact.slip.size() == 2)
+      return fmt::format("'{}' slides in two directions, and contact forces are solved for at every evaluation",
+                         contact.name);
   }
   if (request.code.contacts.empty() && request.code.contact_set.empty()) return "";
   const bool resets = std::any_of(request.events.begin(), request.events.end(),

@@ -4,6 +4,7 @@
 // after impacts.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -34,6 +35,18 @@ void watch_contacts(VariationalEquations& in, std::span<eom::EventFunction> func
 /// Applies the law of contacts where event function `crossing` is 0: t and x are those after it. Throws Error{stage
 /// "run"} if it ends the run.
 void change_contacts(VariationalEquations& in, const eom::Crossing& crossing, double& t, std::vector<double>& x);
+
+/// The bound of slip, or of static friction, of a contact with two directions whose modes are compiled.
+struct SlipBound {
+  std::size_t contact = 0;
+  bool ends = false;              // the slip ends; else it begins
+  std::array<double, 2> along{};  // the slip at its end, which has the least speed
+};
+/// The bound that event function `crossing` stands for; nothing if it is another one.
+std::optional<SlipBound> bound_of_slip(VariationalEquations& in, const eom::Crossing& crossing, double t,
+                                       const std::vector<double>& x);
+/// The slip of a contact with two directions.
+std::array<double, 2> slip_of(VariationalEquations& in, std::size_t contact, double t, const std::vector<double>& x);
 
 /// The name of a contact that has bounced several times and stays closed from this change on; empty if there is none.
 std::string ended_bounces(const VariationalEquations& in, const ContactSnapshot& before, const ContactSnapshot& after);

@@ -3,6 +3,7 @@
 // scene. Out: the right-hand side, event functions, and the changes of the state by events and samples at any (t, x).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <eom/hybrid/resets.hpp>
 #include <eom/hybrid/run_context.hpp>
@@ -16,7 +17,12 @@ namespace eomgen::run {
 /// The equations in one scene.
 struct VariationalEquations {
   VariationalEquations(eom::hybrid::Problem of, std::vector<eom::hybrid::Breakpoint> times)
-      : problem(std::move(of)), kinks(std::move(times)), context(problem), resets(context) {}
+      : problem(std::move(of)), kinks(std::move(times)), context(problem), resets(context) {
+    // The derivatives of slip in two directions have its rounding errors, divided by its least speed.
+    constexpr double least_slip = 1e-8;
+    if (context.contacts)
+      context.contacts->set_tolerances(std::max(problem.rtol, least_slip), std::max(problem.atol, 1e-3 * least_slip));
+  }
   VariationalEquations(const VariationalEquations&) = delete;
   VariationalEquations& operator=(const VariationalEquations&) = delete;
 

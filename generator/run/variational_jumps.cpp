@@ -16,12 +16,6 @@ namespace {
 using eom::hybrid::Breakpoint;
 
 constexpr double continuous = 1e-10;  // of f: a smaller jump is rounding
-constexpr double impulse = 1e-9;      // of the state: a smaller change is rounding
-
-/// Their number up to lasting contact differs beside the motion, and their sum has no derivative by differences.
-std::string accumulation(const std::string& contact, double t) {
-  return fmt::format("the bounces of '{}' accumulate and end in lasting contact at t = {}", contact, t);
-}
 
 }  // namespace
 
@@ -294,101 +288,19 @@ bool VariationalJumps::cross_surface(const eom::EventPoint& point) {
   return true;
 }
 
-// (t, x)+ = J(t, x). Without an impulse J is the identity, and only f changes.
-bool VariationalJumps::change_contact(const eom::EventPoint& point) {
-  const double t = point.t;
-  // Variational equations are not projected. A slip of the wrong sign by rounding would end at once.
-  if (own_.context.rows.size() > 0 && own_.context.projection(t, point.x.data()) != 0)
-    refuse_derivative(fmt::format("the state at t = {} does not satisfy the constraints of its contacts", t));
-  const std::vector<double> x(point.x.begin(), point.x.end()), own = state_of(x);
-  std::vector<double> before(n_), behind(n_);
-  if (!rhs(t, own.data(), before)) return true;  // the integration reports it
-  const ContactSnapshot modes = save_contacts(own_);
-  std::vector<double> times;
-  for (std::size_t d = 0; d < directions_.size(); ++d) times.push_back(time_change(point.crossing.function, t, x, d));
-  restore_contacts(own_, modes);  // slip speeds beside the motion are not observed ones
-  std::optional<ContactSnapshot> next;
-  bool same = true;
-  std::string bounces;  // the contact whose sequence of bounces ends here, or beside the motion
-  const auto changed = [&](VariationalEquations& in, double at, std::vector<double> state) {
-    restore_contacts(in, modes);
-    change_contacts(in, point.crossing, at, state);
-    const ContactSnapshot now = save_contacts(in);
-    if (!next) next = now;
-    same = same && now.has_modes_of(*next);
-    if (bounces.empty()) bounces = ended_bounces(in, modes, now);
-    restore_contacts(in, modes);
-    state.push_back(at);
-    return state;
-  };
-  const std::vector<double> after = changed(own_, t, own);
-  double jump = std::abs(after[n_] - t);
-  for (std::size_t i = 0; i < n_; ++i) jump = std::max(jump, std::abs(after[i] - own[i]));
-  if (next->has_modes_of(modes) && jump == 0) {
-    restore_contacts(own_, *next);  // what the contacts remember of this crossing
-    watch_contacts(own_, point.functions);
-    return false;
-  }
-  std::vector<std::vector<double>> slopes_after;
-  for (std::size_t d = 0; d < directions_.size(); ++d) {
-    std::vector<double> s = sensitivity(x, d);
-    for (std::size_t k = 0; k < n_; ++k) s[k] += before[k] * times[d];
-    if (jump <= impulse * largest_magnitude(own)) {
-      s.push_back(times[d]);
-      slopes_after.push_back(std::move(s));
-      continue;
-    }
-    const Direction& direction = directions_[d];
-    const auto what = [&] {
-      if (!bounces.empty()) return accumulation(bounces, t);
-      return fmt::format("the change of a contact at t = {} does not change smoothly with {}", t, direction.name);
-    };
-    std::vector<std::vector<double>> beside;
-    for (const auto& neighbour : neighbours(d)) {
-      neighbour->enter(segment_);
-      beside.push_back(changed(*neighbour, t, own));
-    }
-    const std::vector<double> of_scene = own_slopes(d, after, beside, what);
-    std::vector<double> slope =
-        derivative_along(scales_, t, own, times[d], s, what,
-                         [&](double at, std::vector<double> state) { return changed(own_, at, std::move(state)); });
-    for (std::size_t k = 0; k <= n_; ++k) slope[k] += of_scene[k];
-    slopes_after.push_back(std::move(slope));
-  }
-  if (!same && !bounces.empty()) refuse_derivative(accumulation(bounces, t));
-  if (!same) refuse_derivative(fmt::format("beside the motion, a contact changes to another mode at t = {}", t));
-  std::copy(after.begin(), after.end() - 1, point.x.begin());
-  point.t = after[n_];
-  restore_contacts(own_, *next);
-  own_.context.freeze_branches(point.t, after.data(), true);
-  watch_contacts(own_, point.functions);
-  if (!rhs(point.t, after.data(), behind)) return true;
-  for (std::size_t d = 0; d < directions_.size(); ++d) {
-    for (std::size_t k = 0; k < n_; ++k)
-      point.x[(d + 1) * n_ + k] = directions_[d].scale * (slopes_after[d][k] - slopes_after[d][n_] * behind[k]);
-  }
-  return true;
-}
-
-/// The modes at the start, which must not begin with an impact.
-void VariationalJumps::start_contacts(const std::vector<double>& x) {
-  if (!own_.context.has_contacts()) return;
-  const std::vector<double> before = state_of(x);
-  std::vector<double> own = before;
-  own_.context.start_contacts(scene_.t0, own);
-  double jump = 0;
-  for (std::size_t i = 0; i < n_; ++i) jump = std::max(jump, std::abs(own[i] - before[i]));
-  if (jump > scene_.atol + scene_.rtol * largest_magnitude(before)) refuse_derivative("the run starts with an impact");
-}
-
 /// The change along direction d of the time at which an event function is 0. x: with every s.
 double VariationalJumps::time_change(std::size_t function, double t, const std::vector<double>& x, std::size_t d) {
-  const std::vector<double> own = state_of(x);
   const auto value = [&](VariationalEquations& in, double at, const std::vector<double>& state) -> std::vector<double> {
     std::vector<double> g(in.context.events.size());
     if (in.context.events(at, state.data(), g.data()) != 0) return {std::nan("")};
     return {g[function]};
   };
+  return time_change(value, t, x, d);
+}
+
+/// The same for any function of the state.
+double VariationalJumps::time_change(const ValuesIn& value, double t, const std::vector<double>& x, std::size_t d) {
+  const std::vector<double> own = state_of(x);
   const auto what = [&] {
     return fmt::format("the time t = {} of an event or kink does not change smoothly with {}", t, directions_[d].name);
   };

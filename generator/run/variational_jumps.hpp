@@ -71,6 +71,7 @@ class VariationalJumps {
   bool cross_surface(const eom::EventPoint& point);
   bool change_contact(const eom::EventPoint& point);
   void start_contacts(const std::vector<double>& x);
+  double time_change(const ValuesIn& value, double t, const std::vector<double>& x, std::size_t d);
   double time_change(std::size_t function, double t, const std::vector<double>& x, std::size_t d);
   std::vector<double> own_slopes(std::size_t d, const std::vector<double>& middle,
                                  const std::vector<std::vector<double>>& beside, const Described& what) const;
