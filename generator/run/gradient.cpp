@@ -14,6 +14,7 @@
 #include "run/central_differences.hpp"
 #include "run/derivative_run.hpp"
 #include "run/directional_derivative.hpp"
+#include "run/lost_rank.hpp"
 #include "run/methods.hpp"
 #include "run/trajectory.hpp"
 #include "run/variational_jumps.hpp"
@@ -377,7 +378,10 @@ Gradients integrate_gradients(const RunRequest& request, const RunResult& motion
   result.outcome = end.outcome;
   result.statistics = end.statistics;
   result.adjoint_evaluations = run.adjoint_evaluations();
-  if (end.outcome != eom::Outcome::done) return result;
+  if (end.outcome != eom::Outcome::done) {
+    require_bounded(request, motion, end.outcome, motion.t);
+    return result;
+  }
   const std::size_t n = request.state_names.size(), count = wanted.directions.size();
   const auto gradient_of = [&](const std::vector<double>& x, std::size_t k) {
     const auto begin = x.begin() + static_cast<std::ptrdiff_t>(n + k * (count + 1) + 1);

@@ -7,11 +7,11 @@
 #include <eom/ode.hpp>
 
 #include "run/derivative_run.hpp"
+#include "run/lost_rank.hpp"
 #include "run/methods.hpp"
 #include "run/variational.hpp"
 
 namespace eomgen::run {
-
 Sensitivities integrate_sensitivities(const RunRequest& request, const RunResult& motion,
                                       const std::vector<Direction>& directions, bool estimate) {
   require_derivatives(request, motion);
@@ -23,14 +23,17 @@ Sensitivities integrate_sensitivities(const RunRequest& request, const RunResult
   result.outcome = end.outcome;
   result.t = motion.t;
   result.statistics = end.statistics;
+  if (end.outcome != eom::Outcome::done) {
+    require_bounded(request, motion, end.outcome, end.t);
+    return result;
+  }
   const std::size_t n = request.state_names.size(), all = directions.size();
   for (std::size_t d = 0; d < all; ++d) {
     result.list.push_back({directions[d].name, {}, 0, {}, 0});
     Sensitivity& s = result.list.back();
     for (std::size_t i = 0; i < n; ++i) s.value.push_back(end.x[(d + 1) * n + i] / directions[d].scale);
-    if (end.outcome == eom::Outcome::done) s.of_time = end.x[(all + 1) * n + d] / directions[d].scale;
+    s.of_time = end.x[(all + 1) * n + d] / directions[d].scale;
   }
-  if (end.outcome != eom::Outcome::done) return result;
   const EndComparison comparison(request, motion, end.x);
   if (!estimate && comparison.agrees({})) return result;
   const eom::ErrorEstimate error = eom::estimate_error(get_method(result.solver).order, request.scene.t0, end, options,

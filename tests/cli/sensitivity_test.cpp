@@ -118,6 +118,18 @@ t = [0, 1]
   CHECK(chain["sensitivities"]["outcome"] == "done");
 }
 
+TEST_CASE("sensitivity: derivatives that end where constraints lose rank are refused by the name of one") {
+  const Folder folder;
+  for (const std::vector<std::string>& wanted : {std::vector<std::string>{"--sensitivity", "L"},
+                                                 std::vector<std::string>{"--gradient", "energy", "--by", "L"}}) {
+    std::vector<std::string> arguments{"run", "n_four_bar_2"};
+    arguments.insert(arguments.end(), wanted.begin(), wanted.end());
+    CHECK(contains(expect(2, folder, arguments).err, "the constraint 'window"));
+  }
+  CHECK(document(folder, {"run", "n_four_bar_2", "--t-end", "1", "--sensitivity", "L"})["sensitivities"]["outcome"] ==
+        "done");
+}
+
 TEST_CASE("sensitivity: everything that follows from a changed start or time changes with it") {
   const Folder folder;
   const double s = std::sin(6.0), c = std::cos(6.0);  // w t = 2 * 3
