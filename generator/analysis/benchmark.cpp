@@ -12,6 +12,7 @@
 #include "analysis/reference_boundaries.hpp"
 #include "bench/libraries.hpp"
 #include "error.hpp"
+#include "pipeline/bound_run.hpp"
 #include "run/integration.hpp"
 
 namespace eomgen::analysis {
@@ -151,8 +152,8 @@ Benchmark benchmark(const BenchmarkRequest& asked) {
   const auto show = [&asked](const std::string& what) {
     if (asked.progress) asked.progress(what);
   };
-  const run::Code code = simulation.code.code_for_run();
-  run::RunRequest request = pipeline::make_run_request(*simulation.derived, simulation.scene, code, false);
+  result.simulation.charts.reset();  // the reference stays in the model's own coordinates
+  run::RunRequest request = pipeline::make_run_request(*simulation.derived, simulation, simulation.scene, false);
   request.watch_power = false;
   request.interrupt = asked.interrupt;
   ReferenceTrial trial = require_reference(simulation, request);

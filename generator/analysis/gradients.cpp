@@ -16,8 +16,7 @@ run::Gradients gradients(const pipeline::Simulation& simulation, const pipeline:
     pipeline::DerivedModel& derived = *simulation.derived;
     by = run::independent_parameters(derived.mechanics, derived.model.scene(request.scene), request.overrides);
   }
-  const run::Code code = simulation.code.code_for_run();
-  const run::RunRequest run = differentiable_run(simulation, request, code);
+  const run::RunRequest run = differentiable_run(simulation, request);
   const std::vector<run::Direction> directions = directions_of(simulation, request, run, by);
   return run::integrate_gradients(run, simulation.result,
                                   {directions, outputs, simulation.code.functions().adjoint, request.estimate});

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "model/names.hpp"
+#include "pipeline/bound_run.hpp"
 
 namespace eomgen::analysis {
 namespace {
@@ -37,9 +38,8 @@ std::vector<std::string> sensitivity_functions(const model::Model& model) {
   return functions;
 }
 
-run::RunRequest differentiable_run(const pipeline::Simulation& simulation, const pipeline::SimulationRequest& request,
-                                   const run::Code& code) {
-  run::RunRequest run = pipeline::make_run_request(*simulation.derived, simulation.scene, code, false);
+run::RunRequest differentiable_run(const pipeline::Simulation& simulation, const pipeline::SimulationRequest& request) {
+  run::RunRequest run = pipeline::make_run_request(*simulation.derived, simulation, simulation.scene, false);
   run.interrupt = request.interrupt;
   run.max_steps = request.max_steps;
   return run;
@@ -62,8 +62,7 @@ std::vector<run::Direction> directions_of(const pipeline::Simulation& simulation
 
 run::Sensitivities sensitivities(const pipeline::Simulation& simulation, const pipeline::SimulationRequest& request,
                                  const std::vector<std::string>& names) {
-  const run::Code code = simulation.code.code_for_run();
-  const run::RunRequest run = differentiable_run(simulation, request, code);
+  const run::RunRequest run = differentiable_run(simulation, request);
   return run::integrate_sensitivities(run, simulation.result, directions_of(simulation, request, run, names),
                                       request.estimate);
 }

@@ -11,9 +11,8 @@ namespace eomgen::analysis {
 /// Generated functions that sensitivities need in addition to those of a run.
 std::vector<std::string> sensitivity_functions(const model::Model& model);
 
-/// The run of a simulation without rows and estimate. code: that of the simulation, which has to outlive the result.
-run::RunRequest differentiable_run(const pipeline::Simulation& simulation, const pipeline::SimulationRequest& request,
-                                   const run::Code& code);
+/// The run of a simulation without rows and estimate; it refers to the simulation.
+run::RunRequest differentiable_run(const pipeline::Simulation& simulation, const pipeline::SimulationRequest& request);
 
 /// `names`: parameters, coordinates (initial value) and NAME_dot (initial rate). Throws Error{stage "run"} for an
 /// unknown name, a dependent value, or an initial state that cannot be adjusted to the change.

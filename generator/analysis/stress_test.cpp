@@ -10,6 +10,7 @@
 
 #include "error.hpp"
 #include "numeric/numbers.hpp"
+#include "pipeline/bound_run.hpp"
 #include "run/integration.hpp"
 #include "stress/start.hpp"
 
@@ -26,8 +27,8 @@ constexpr const char* again = "_again";  // ends the name of a repeated constrai
 /// The scene of one case, made anew from the model where constants change.
 class Variation {
  public:
-  Variation(const pipeline::Simulation& simulation, const run::Overrides& overrides, const run::Code& code)
-      : simulation_(simulation), overrides_(overrides), code_(code) {}
+  Variation(const pipeline::Simulation& simulation, const run::Overrides& overrides)
+      : simulation_(simulation), overrides_(overrides) {}
 
   std::optional<run::Scene> scene(const stress::Case& test, std::string& why) const {
     pipeline::DerivedModel& derived = *simulation_.derived;
@@ -59,7 +60,7 @@ class Variation {
       if (test.zero_replacement && scene.qdot[i] == 0) scene.qdot[i] = *test.zero_replacement;
     }
     if (constrained && !kept.empty() &&
-        !stress::project_start(scene, pipeline::make_run_request(derived, scene, code_, false), kept)) {
+        !stress::project_start(scene, pipeline::make_run_request(derived, simulation_, scene, false), kept)) {
       why = "the constraints allow no start there";
       return std::nullopt;
     }
@@ -74,7 +75,7 @@ class Variation {
 
  private:
   bool broken(const run::Scene& scene, double speed) const {
-    const run::RunRequest request = pipeline::make_run_request(*simulation_.derived, scene, code_, false);
+    const run::RunRequest request = pipeline::make_run_request(*simulation_.derived, simulation_, scene, false);
     run::Integration integration(request, "dop853");
     const std::vector<double> x = integration.initial_state();
     double largest = 0;
@@ -85,7 +86,6 @@ class Variation {
 
   const pipeline::Simulation& simulation_;
   const run::Overrides& overrides_;
-  const run::Code& code_;
 };
 
 /// Defect of `repeated`, a model that states constraint `name` of `given` a second time; empty if there is none.
@@ -156,14 +156,14 @@ StressFindings stress_test(const StressRequest& asked) {
   StressFindings found;
   found.solvers = run::select_solvers("stress", asked.solvers);
   const pipeline::SimulationRequest wanted = simulation_request(asked);
-  const pipeline::Simulation simulation = pipeline::simulate(wanted);
+  pipeline::Simulation simulation = pipeline::simulate(wanted);
+  simulation.charts.reset();  // all solvers stay in the model's own coordinates
   const work::DeferInterrupt kept;
   found.scene = simulation.scene.name;
-  const run::Code code = simulation.code.code_for_run();
-  const Variation variation(simulation, wanted.overrides, code);
+  const Variation variation(simulation, wanted.overrides);
   stress::Request request;
   request.run = [&](const run::Scene& scene) {
-    return pipeline::make_run_request(*simulation.derived, scene, code, true);
+    return pipeline::make_run_request(*simulation.derived, simulation, scene, true);
   };
   request.solvers = found.solvers;
   request.seconds_limit = asked.max_seconds;
@@ -173,7 +173,7 @@ StressFindings stress_test(const StressRequest& asked) {
   stress::Auditor auditor(simulation.derived->mechanics, simulation.program);
   request.on_motion = [&](const stress::Case& test, const run::Scene& scene,
                           const std::vector<stress::Sample>& samples) {
-    auditor.add_motion(test.name, scene, code, samples);
+    auditor.add_motion(test.name, scene, simulation.code.code_for_run(), samples);
   };
   for (const stress::Case& test : stress::make_cases(simulation.derived->mechanics, simulation.scene, asked.quick)) {
     if (asked.interrupt != nullptr && *asked.interrupt) break;

@@ -157,7 +157,7 @@ const char* compiled_when(const pipeline::CompiledCode& code) {
 }  // namespace
 
 Json RunReport::json() const {
-  const auto& [program, certificate, code, tier, charts, surfaces, monitored] =
+  const auto& [program, certificate, code, tier, charts, bounded] =
       static_cast<const pipeline::Compilation&>(simulation);
   const pipeline::DerivedModel& derived = *simulation.derived;
   const run::Scene& scene = simulation.scene;
@@ -250,7 +250,7 @@ Json RunReport::json() const {
 }
 
 std::string RunReport::text() const {
-  const auto& [program, certificate, code, tier, charts, surfaces, monitored] =
+  const auto& [program, certificate, code, tier, charts, bounded] =
       static_cast<const pipeline::Compilation&>(simulation);
   const pipeline::DerivedModel& derived = *simulation.derived;
   const run::Scene& scene = simulation.scene;

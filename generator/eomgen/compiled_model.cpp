@@ -10,14 +10,13 @@
 #include "derive/inertias.hpp"
 #include "eomgen/compiled_state.hpp"
 #include "eomgen/model.hpp"
-#include "run/bind.hpp"
 
 namespace eomgen {
 namespace {
 
-SceneValues values_of(pipeline::BoundRun& run, const std::string& solver, std::size_t states) {
+SceneValues values_of(const pipeline::BoundRun& run, const std::string& solver, std::size_t states) {
   const run::Scene& scene = run.scene();
-  SceneValues values{scene.t0, scene.t1, scene.parameters, run::make_problem(run.request(), solver).start};
+  SceneValues values{scene.t0, scene.t1, scene.parameters, run.problem(solver).start};
   values.state.resize(states);
   return values;
 }

@@ -109,23 +109,20 @@ Motion Model::run(const RunOptions& options, const CallControl& control) const {
     for (const std::string& column : motion.columns)
       index.push_back(static_cast<std::size_t>(std::find(names.begin(), names.end(), column) - names.begin()));
     std::vector<double> values(index.size());
-    run::RunRequest& request = run->request();
-    request.every = pipeline::row_interval(run->scene());
-    request.row = [&](double t, std::span<const double> y) {
+    run->request().every = pipeline::row_interval(run->scene());
+    pipeline::RunControl limits;
+    limits.row = [&](double t, std::span<const double> y) {
       for (std::size_t i = 0; i < index.size(); ++i) values[i] = y[index[i]];
       if (options.row) return options.row(t, values);
       motion.times.push_back(t);
       motion.rows.push_back(values);
     };
-    request.progress = call.progress();
-    request.interrupt = call.stopped();
-    request.max_steps = options.max_steps;
-    request.estimate_cost = pipeline::parse_estimate_cost(options.estimate, !options.error_estimate);
+    limits.progress = call.progress();
+    limits.interrupt = call.stopped();
+    limits.max_steps = options.max_steps;
+    limits.estimate_cost = pipeline::parse_estimate_cost(options.estimate, !options.error_estimate);
     const work::DeferInterrupt kept;  // from here on, an interruption returns the partial motion
-    run::RunResult result = run->integrate();
-    result.reason.charts_refused = prepared.plan->charts_refused;
-    result.reason.charts_kept_for_jumps = prepared.plan->charts_kept_for_jumps;
-    take_result(result, motion);
+    take_result(run->integrate(*prepared.plan, limits), motion);
     return motion;
   });
 }

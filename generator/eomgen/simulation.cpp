@@ -11,7 +11,6 @@
 #include "eomgen/motion_event.hpp"
 #include "eomgen/validation.hpp"
 #include "model/names.hpp"
-#include "run/bind.hpp"
 #include "run/eligibility.hpp"
 #include "run/methods.hpp"
 #include "run/monitored_functions.hpp"
@@ -88,12 +87,12 @@ eom::hybrid::Problem Simulation::Data::problem(const SimulationOptions& options)
   const run::Scene& scene = bound->scene();
   run::RunRequest& request = bound->request();
   const std::string solver = run::choose_solver(scene.solver, scene).first;
-  run::require_eligible(solver, run::features_of(scene) | run::features_of(bound->code()));
+  run::require_eligible(solver, run::features_of(scene) | eom::hybrid::features_of(bound->code()));
   request.every = every;
   request.max_steps = options.max_steps;
   request.watch_power = false;
   request.row = [this](double t, std::span<const double> y) { write_row(t, y); };
-  eom::hybrid::Problem problem = run::make_problem(request, solver);
+  eom::hybrid::Problem problem = bound->problem(solver);
   problem.time = scene.time;
   // Beyond the scene's span, and with other inputs, there may be kinks that the scene does not meet.
   if (problem.jumps.functions.empty() && model->run.compilation->charts == nullptr) {

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "run/bind.hpp"
+#include "run/integration.hpp"
+
 namespace eomgen::pipeline {
 namespace {
 
@@ -26,20 +29,34 @@ void allow_charts(run::RunRequest& run, const std::shared_ptr<ChartLibrary>& lib
   };
 }
 
-run::Code bound_code(const Compilation& compilation) {
-  run::Code code = compilation.code.code_for_run();
-  code.kink_values = compilation.kink_values;
-  return code;
-}
-
 }  // namespace
 
-BoundRun::BoundRun(const DerivedModel& derived, const Compilation& compilation, run::Scene scene, bool estimate)
-    : scene_(std::move(scene)),
-      code_(bound_code(compilation)),
-      request_(make_run_request(derived, scene_, code_, estimate, &compilation.bounded_functions)) {
-  allow_charts(request_, compilation.charts);
+run::RunRequest make_run_request(const DerivedModel& derived, const Compilation& compilation, const run::Scene& scene,
+                                 bool estimate) {
+  run::RunRequest run =
+      describe_run(derived, scene, compilation.code.code_for_run(), estimate, compilation.bounded_functions);
+  allow_charts(run, compilation.charts);
+  return run;
 }
+
+BoundRun::BoundRun(const DerivedModel& derived, const Compilation& compilation, run::Scene scene, bool estimate)
+    : scene_(std::move(scene)), request_(make_run_request(derived, compilation, scene_, estimate)) {}
+
+run::RunResult BoundRun::integrate() const { return run::integrate_scene(request_); }
+
+run::RunResult BoundRun::integrate(const RunPlan& plan, const RunControl& control) {
+  request_.row = control.row;
+  request_.progress = control.progress;
+  request_.interrupt = control.interrupt;
+  request_.max_steps = control.max_steps;
+  request_.estimate_cost = control.estimate_cost;
+  run::RunResult result = integrate();
+  result.reason.charts_refused = plan.charts_refused;
+  result.reason.charts_kept_for_jumps = plan.charts_kept_for_jumps;
+  return result;
+}
+
+eom::hybrid::Problem BoundRun::problem(const std::string& solver) const { return run::make_problem(request_, solver); }
 
 run::RunResult rerun(const Simulation& simulation, const run::Overrides& overrides, bool estimate,
                      eom::EstimateCost cost) {

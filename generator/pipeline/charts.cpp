@@ -80,17 +80,16 @@ ChartLibrary::ChartLibrary(DerivedModel& own, program::Program program, emit::Em
       charts_(exchangeable_charts(list_charts(own.mechanics))) {}
 
 const run::Code& ChartLibrary::code_for(const std::vector<unsigned>& masks) {
-  if (const auto found = compiled_.find(masks); found != compiled_.end()) return found->second.functions;
+  if (const auto found = compiled_.find(masks); found != compiled_.end()) return found->second.code.code_for_run();
   const auto start = std::chrono::steady_clock::now();
   const auto before = compiled_.find({masks.begin(), masks.end() - 1});
   program::Program program = before != compiled_.end() ? before->second.program : program_;
   add_second_charts(own_, program, charts_, masks.back(), request_);
   context_.tests = test_vectors(program, context_);
   CompiledCode code = make_code(request_.tier, program, context_, true);
-  const run::Code functions = code.code_for_run();
-  const auto made = compiled_.emplace(masks, Compiled{std::move(program), std::move(code), functions}).first;
+  const auto made = compiled_.emplace(masks, Compiled{std::move(program), std::move(code)}).first;
   seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return made->second.functions;
+  return made->second.code.code_for_run();
 }
 
 }  // namespace eomgen::pipeline

@@ -50,7 +50,6 @@ class ChartLibrary {
   struct Compiled {
     program::Program program;
     CompiledCode code;
-    run::Code functions;
   };
 
   DerivedModel& own_;

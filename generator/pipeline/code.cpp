@@ -56,23 +56,35 @@ std::map<std::string, std::vector<std::size_t>> array_sizes(const program::Progr
   return arrays;
 }
 
+/// The description of a program's code with the functions of a run.
+run::Code bound_code(const abi::CompiledFunctions& functions, const program::Program& program) {
+  run::Code code = describe_code(program);
+  const auto bind = [&](const auto& one) { one(code, functions); };
+#define ABI_FUNCTION(name, takes, gives, comes, purpose)      \
+  bind([](auto& to, const auto& from) {                       \
+    if constexpr (requires { to.name; }) to.name = from.name; \
+  });
+#include "abi/functions.inc"
+#undef ABI_FUNCTION
+  return code;
+}
+
 }  // namespace
 
 CompiledCode::CompiledCode(emit::CompiledModel compiled, const program::Program& program)
-    : seconds_(compiled.seconds),
-      cached_(compiled.cached),
-      described_(describe_code(program)),
-      arrays_(array_sizes(program)) {
+    : seconds_(compiled.seconds), cached_(compiled.cached), arrays_(array_sizes(program)) {
   const auto kept = std::make_shared<const emit::CompiledModel>(std::move(compiled));
   functions_ = &kept->model;
   owner_ = kept;
+  code_ = bound_code(*functions_, program);
 }
 
 CompiledCode::CompiledCode(jit::MachineCode code, double seconds, const program::Program& program)
-    : tier_(Tier::jit), seconds_(seconds), described_(describe_code(program)), arrays_(array_sizes(program)) {
+    : tier_(Tier::jit), seconds_(seconds), arrays_(array_sizes(program)) {
   const auto kept = std::make_shared<const jit::MachineCode>(std::move(code));
   functions_ = kept.get();
   owner_ = kept;
+  code_ = bound_code(*functions_, program);
 }
 
 namespace {
@@ -115,13 +127,13 @@ verify::CompiledForm CompiledCode::form() const {
   const abi::CompiledFunctions* const model = functions_;
   verify::CompiledForm form;
   form.name = "emitted code";
-  form.call = [model, arrays = arrays_, described = described_](const std::string& function,
-                                                                const verify::AbiArguments& at) {
+  form.call = [model, arrays = arrays_, described = code_](const std::string& function,
+                                                           const verify::AbiArguments& at) {
     return called(*model, described, function, at, arrays.at(function));
   };
-  form.rhs = [model, described = described_](double t, const std::vector<double>& x, const std::vector<double>& p,
-                                             const std::vector<double>& u,
-                                             const std::vector<int>& contacts) -> std::optional<std::vector<double>> {
+  form.rhs = [model, described = code_](double t, const std::vector<double>& x, const std::vector<double>& p,
+                                        const std::vector<double>& u,
+                                        const std::vector<int>& contacts) -> std::optional<std::vector<double>> {
     std::vector<double> dx(described.layout().size()), w(described.prepared);
     const std::vector<int> mode = mode_array(contacts, described);
     // The function that `run` integrates; the self test has compared it with `rhs`.
@@ -133,19 +145,6 @@ verify::CompiledForm CompiledCode::form() const {
     return dx;
   };
   return form;
-}
-
-run::Code CompiledCode::code_for_run() const {
-  const abi::CompiledFunctions& model = *functions_;
-  run::Code code = described_;
-  const auto bind = [&](const auto& one) { one(code, model); };  // the functions of a run
-#define ABI_FUNCTION(name, takes, gives, comes, purpose)      \
-  bind([](auto& to, const auto& from) {                       \
-    if constexpr (requires { to.name; }) to.name = from.name; \
-  });
-#include "abi/functions.inc"
-#undef ABI_FUNCTION
-  return code;
 }
 
 CompiledCode compile(const program::Program& program, const emit::EmissionContext& context, bool again) {

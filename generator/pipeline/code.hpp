@@ -28,7 +28,8 @@ class CompiledCode {
 
   /// Holds references to the functions.
   verify::CompiledForm form() const;
-  run::Code code_for_run() const;
+  /// The functions and their description, as runs need them.
+  const run::Code& code_for_run() const { return code_; }
   const abi::CompiledFunctions& functions() const { return *functions_; }
   Tier tier() const { return tier_; }
   double seconds() const { return seconds_; }  // of the compiler, or of the generation of machine code
@@ -40,7 +41,7 @@ class CompiledCode {
   Tier tier_ = Tier::compiled;
   double seconds_ = 0;
   bool cached_ = false;
-  run::Code described_;
+  run::Code code_;
   std::map<std::string, std::vector<std::size_t>> arrays_;  // sizes of the output arrays of each function
 };
 

@@ -15,6 +15,7 @@
 
 #include "emit/targets.hpp"
 #include "error.hpp"
+#include "pipeline/bound_run.hpp"
 #include "pipeline/graph_trimmer.hpp"
 #include "run/monitored_functions.hpp"
 #include "work.hpp"
@@ -95,7 +96,6 @@ class Runs {
     }
     if (!events_.empty()) {
       ranges_.resize(how_.size());
-      bounded_ = bounded_events(*first.derived, code_);
     }
     kinetic_ = place("kinetic");
     potential_ = place("potential");
@@ -223,16 +223,15 @@ class Runs {
     eom::ensemble::run_in_threads(asked_.threads, how_.size(), [this](const auto& next) {
       for (std::size_t member = 0; next(member);) {
         if (stopped()) return;
-        std::optional<run::Scene> scene;
-        std::optional<run::RunRequest> request;
+        std::optional<BoundRun> run;
         {
           const std::lock_guard<std::mutex> guard(lock_);  // scenes are resolved in the model's own graph
-          scene = scene_of(member);
+          std::optional<run::Scene> scene = scene_of(member);
           if (!scene) continue;
-          request.emplace(make_run_request(*first_.derived, *scene, code_, false));
+          run.emplace(*first_.derived, first_, std::move(*scene), false);
         }
-        request->interrupt = asked_.interrupt;
-        const run::RunResult result = run::integrate_scene(*request);
+        run->request().interrupt = asked_.interrupt;
+        const run::RunResult result = run->integrate();
         const std::lock_guard<std::mutex> guard(lock_);
         if (!stopped()) asked_.on_end(asked_.runs[member], result);
       }
@@ -265,7 +264,8 @@ class Runs {
     how_[member] = How::together;
     if (!events_.empty()) {
       const eom::hybrid::StepVariables variables(states_, u_);
-      ranges_[member] = std::make_unique<eom::hybrid::EventRanges>(bounded_, variables, scene->parameters);
+      ranges_[member] =
+          std::make_unique<eom::hybrid::EventRanges>(first_.bounded_functions.events, variables, scene->parameters);
     }
     if (watches_energy_) energy_[member] = energy(outputs(start.t0, start.x, start.p)).first;
   }
@@ -307,12 +307,11 @@ class Runs {
   const Simulation& first_;
   const EnsembleRequest& asked_;
   GraphTrimmer graph_;
-  run::Code code_;
+  const run::Code& code_;
   const emit::LoadedBatch* batch_;  // null: runs are made one by one
   std::vector<How> how_;
   std::vector<double> energy_;                                     // at the start of each
   std::vector<eom::EventFunction> events_;                         // of the model
-  std::vector<eom::expressions::Table> bounded_;                   // event functions
   std::vector<std::unique_ptr<eom::hybrid::EventRanges>> ranges_;  // of the active members
   std::size_t states_ = 0, p_ = 0, w_ = 0, u_ = 0;                 // rows: parameters, prepared values, inputs
   std::size_t kinetic_ = 0, potential_ = 0;
@@ -328,7 +327,7 @@ std::string ensemble_solver(const model::Scene& scene, const run::Overrides& ove
 }
 
 std::string ensemble_obstacle(const Simulation& first) {
-  const run::Code code = first.code.code_for_run();
+  const run::Code& code = first.code.code_for_run();
   if (!code.contacts.empty() || !code.contact_set.empty())
     return "the model has contacts with friction, or unilateral contacts";
   if (!code.kinks.empty()) return "the equations have kinks (abs, sign, min, max, if, atan2), which are located";

@@ -40,7 +40,9 @@ std::vector<eom::hybrid::ExchangedChart> exchanged(const program::Program& progr
 std::shared_ptr<const emit::RunDescription> run_text(const DerivedModel& derived, const run::Scene& scene,
                                                      const program::Program& program) {
   auto described = std::make_shared<Described>(Described{scene, describe_code(program), {}});
-  run::RunRequest request = make_run_request(derived, described->scene, described->code, true);
+  const std::vector<std::optional<symbolic::Ref>> kinks(program.kinks.size());
+  run::RunRequest request =
+      describe_run(derived, described->scene, described->code, true, bounded_functions(derived, kinks));
   request.every = row_interval(scene);
   described->problem = run::make_problem(request, run::choose_solver(scene.solver, scene).first);
   described->problem.beyond_range = {};

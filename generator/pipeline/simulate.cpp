@@ -66,12 +66,12 @@ bool energy_is_conserved(const DerivedModel& derived) {
 
 }  // namespace
 
-std::vector<eom::expressions::Table> bounded_events(const DerivedModel& derived, const run::Code& code) {
+eom::hybrid::BoundedFunctions bounded_functions(const DerivedModel& derived,
+                                                const std::vector<std::optional<symbolic::Ref>>& kinks) {
   const system::EquationSystem& system = derived.candidates.front();
   std::vector<std::optional<symbolic::Ref>> functions;
   for (const system::Event& event : system.events) functions.emplace_back(event.value);
-  functions.insert(functions.end(), code.kink_values.begin(), code.kink_values.end());
-  functions.resize(system.events.size() + code.kinks.size());
+  functions.insert(functions.end(), kinks.begin(), kinks.end());
   for (const system::Contact& contact : system.contacts) {
     for (std::size_t value = 0; value < eom::contact_values; ++value) {
       functions.emplace_back();
@@ -82,8 +82,10 @@ std::vector<eom::expressions::Table> bounded_events(const DerivedModel& derived,
     functions.resize(functions.size() + eom::hybrid::SolvedContacts::values_per_contact);
     if (contact.unilateral) functions[functions.size() - eom::hybrid::SolvedContacts::values_per_contact] = contact.gap;
   }
-  if (functions.empty()) return {};
-  return run::bounded_events(system, functions);
+  eom::hybrid::BoundedFunctions bounded;
+  if (!functions.empty()) bounded.events = run::bounded_events(system, functions);
+  bounded.narrow = run::narrow_functions(system);
+  return bounded;
 }
 
 double row_interval(const run::Scene& scene) {
@@ -104,8 +106,8 @@ std::vector<std::string> state_names(const DerivedModel& derived) {
   return names;
 }
 
-run::RunRequest make_run_request(const DerivedModel& derived, const run::Scene& scene, const run::Code& code,
-                                 bool estimate, const eom::hybrid::BoundedFunctions* monitored) {
+run::RunRequest describe_run(const DerivedModel& derived, const run::Scene& scene, const run::Code& code, bool estimate,
+                             const eom::hybrid::BoundedFunctions& bounded) {
   run::RunRequest run{code, scene, state_names(derived), {}, {}, !energy_is_conserved(derived), estimate, 0, 1, {}, {}};
   const system::EquationSystem& system = derived.candidates.front();
   for (std::size_t i = 0; i < derived.conserved.size(); ++i) {
@@ -119,9 +121,7 @@ run::RunRequest make_run_request(const DerivedModel& derived, const run::Scene& 
     if (output.kind == OutputKind::redundant) run.redundant.push_back(output.name);
   }
   run.contacts = contact_outputs(system);
-  run.bounded_functions = monitored != nullptr ? *monitored
-                                               : eom::hybrid::BoundedFunctions{bounded_events(derived, code),
-                                                                               run::narrow_functions(system)};
+  run.bounded_functions = bounded;
   run.holds_beyond_range = [&derived, &scene, &code](std::uint32_t coordinate, double t, std::span<const double> x) {
     return equations_hold_beyond_range(derived, scene, code, coordinate, t, x);
   };
@@ -177,19 +177,18 @@ program::Request functions_for_run(const DerivedModel& derived, const run::Scene
 
 namespace {
 
-/// The kink surfaces of a program as expressions.
-std::vector<symbolic::Ref> kink_values(const DerivedModel& derived, const program::Program& program) {
-  std::vector<symbolic::Ref> values;
+/// The kink surfaces of a program as expressions, where they are known.
+std::vector<std::optional<symbolic::Ref>> kink_values(const DerivedModel& derived, const program::Program& program) {
   for (const system::EquationSystem& candidate : derived.candidates) {
     if (program.kinks.empty() || candidate.formulation != program.formulation ||
         candidate.approach != program.approach || candidate.form != program.form)
       continue;
     system::EquationSystem held = candidate;
-    for (const program::Kink& kink : program::freeze_kink_branches(held)) values.push_back(kink.value);
+    std::vector<std::optional<symbolic::Ref>> values;
+    for (const program::Kink& kink : program::freeze_kink_branches(held)) values.emplace_back(kink.value);
     if (values.size() == program.kinks.size()) return values;
-    values.clear();
   }
-  return values;
+  return std::vector<std::optional<symbolic::Ref>>(program.kinks.size());
 }
 
 }  // namespace
@@ -245,12 +244,8 @@ Compilation compile_run(DerivedModel& derived, const RunPlan& plan, const Simula
         derived, program, std::move(context),
         ChartRequest{plan.functions, request.approach, request.form, request.seed, tier.tier});
   }
-  run::Code described = code.code_for_run();
-  described.kink_values = kink_values(derived, program);
-  eom::hybrid::BoundedFunctions monitored{bounded_events(derived, described),
-                                          run::narrow_functions(derived.candidates.front())};
-  return {std::move(program), std::move(certificate),           std::move(code),     tier,
-          std::move(charts),  std::move(described.kink_values), std::move(monitored)};
+  eom::hybrid::BoundedFunctions bounded = bounded_functions(derived, kink_values(derived, program));
+  return {std::move(program), std::move(certificate), std::move(code), tier, std::move(charts), std::move(bounded)};
 }
 
 Simulation simulate(const SimulationRequest& request) {
@@ -267,14 +262,7 @@ Simulation simulate(const SimulationRequest& request) {
     if (!request.rows && request.rows_follow_steps) run.row_subdivisions = row_subdivisions(plan.scene);
     request.begin(*derived, plan.scene, bound.code().output_names);
   }
-  run.row = request.row;
-  run.progress = request.progress;
-  run.interrupt = request.interrupt;
-  run.max_steps = request.max_steps;
-  run.estimate_cost = request.estimate_cost;
-  if (request.integrate) simulation.result = bound.integrate();
-  simulation.result.reason.charts_refused = plan.charts_refused;
-  simulation.result.reason.charts_kept_for_jumps = plan.charts_kept_for_jumps;
+  if (request.integrate) simulation.result = bound.integrate(plan, request);
   if (simulation.charts) {
     double& seconds = simulation.result.seconds_integrate;
     seconds = std::max(0.0, seconds - simulation.charts->seconds());

@@ -15,7 +15,16 @@
 
 namespace eomgen::pipeline {
 
-struct SimulationRequest {
+/// What an integration reports, and its limits.
+struct RunControl {
+  std::function<void(double t, std::span<const double> values)> row = {};
+  std::function<void(double fraction)> progress = {};
+  const std::atomic<bool>* interrupt = nullptr;
+  std::size_t max_steps = 0;  // as in run::RunRequest
+  eom::EstimateCost estimate_cost = eom::EstimateCost::bounded;
+};
+
+struct SimulationRequest : RunControl {
   // Defined in the .cpp file, so that they are compiled only once.
   SimulationRequest();
   SimulationRequest(const SimulationRequest&);
@@ -30,7 +39,6 @@ struct SimulationRequest {
   ApproachChoice approach = ApproachChoice::automatic;
   FormChoice form = std::nullopt;
   bool estimate = true;
-  eom::EstimateCost estimate_cost = eom::EstimateCost::bounded;
   bool integrate = true;          // false: everything but the run; `result` stays empty
   std::vector<std::string> with;  // further functions of the code
   bool every_solver = false;      // the code has the functions for every eligible solver
@@ -44,12 +52,8 @@ struct SimulationRequest {
   /// Called before the first row with the names of all columns (at least the coordinates with their rates, energy,
   /// kinetic, potential, reactions and the outputs of the scene). Empty: no rows.
   std::function<void(const DerivedModel&, const run::Scene&, const std::vector<std::string>& names)> begin;
-  std::function<void(double t, std::span<const double> values)> row;
-  std::size_t max_steps = 0;       // as in run::RunRequest
   std::optional<double> rows;      // the number of rows, instead of the interval of the scene
   bool rows_follow_steps = false;  // further rows where steps are shorter, if no interval is given
-  std::function<void(double fraction)> progress;
-  const std::atomic<bool>* interrupt = nullptr;
 };
 
 /// The code of runs of a derived model, for any numbers. Immutable but for the charts, which runs request.
@@ -59,7 +63,6 @@ struct Compilation {
   CompiledCode code;
   TierChoice tier;
   std::shared_ptr<ChartLibrary> charts;             // if runs may exchange charts
-  std::vector<symbolic::Ref> kink_values;           // surfaces of the kinks
   eom::hybrid::BoundedFunctions bounded_functions;  // monitored by every run
 };
 
@@ -108,13 +111,14 @@ program::Request functions_for_run(const DerivedModel& derived, const run::Scene
 /// Names of the states: free coordinates, their rates, states of first order.
 std::vector<std::string> state_names(const DerivedModel& derived);
 
-/// The request of a run with compiled code, without rows. `monitored`: of the compilation, so that it is not made
-/// again.
-run::RunRequest make_run_request(const DerivedModel& derived, const run::Scene& scene, const run::Code& code,
-                                 bool estimate, const eom::hybrid::BoundedFunctions* monitored = nullptr);
+/// A run of a scene with described code, which may be without functions. Runs are requested by make_run_request
+/// (bound_run.hpp).
+run::RunRequest describe_run(const DerivedModel& derived, const run::Scene& scene, const run::Code& code, bool estimate,
+                             const eom::hybrid::BoundedFunctions& bounded);
 
-/// Tables of the event functions of the code that depend on the state alone: events, kink surfaces, gaps of contacts.
-std::vector<eom::expressions::Table> bounded_events(const DerivedModel& derived, const run::Code& code);
+/// Tables of the functions that depend on the state alone: events, kink surfaces, gaps of contacts, narrow forces.
+eom::hybrid::BoundedFunctions bounded_functions(const DerivedModel& derived,
+                                                const std::vector<std::optional<symbolic::Ref>>& kinks);
 
 /// Runs the same compiled code with other values, for sweeps and for tests over tolerances. `overrides` may change all
 /// values; outputs are limited to those in the code. No rows.

@@ -79,8 +79,6 @@ eom::Features features_of(const system::EquationSystem& system, bool kinks) {
       .set(Feature::other_states, !system.states.empty());
 }
 
-eom::Features features_of(const Code& code) { return eom::hybrid::features_of(code); }
-
 eom::Features features_of(const Scene& scene) {
   return eom::Features{}.set(
       Feature::moving_inputs,

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <eom/features.hpp>
+#include <eom/hybrid/code.hpp>
 #include <eom/run_types.hpp>
 #include <string>
 #include <vector>
@@ -12,7 +13,7 @@
 
 namespace eomgen::run {
 
-struct Code;
+using eom::hybrid::Code;
 struct Scene;
 
 /// `auto`, then the runtime's registry in its order.
@@ -29,9 +30,7 @@ bool uses_jacobian(const eom::MethodInfo& method);
 
 /// Features of equations before compilation: the features that their code can have. kinks: whether they have kinks.
 eom::Features features_of(const system::EquationSystem& system, bool kinks);
-/// Features of compiled code, as requested for its compilation.
-eom::Features features_of(const Code& code);
-/// Features of a scene, without those of its code.
+/// Features of a scene, without those of its code (eom::hybrid::features_of).
 eom::Features features_of(const Scene& scene);
 
 eom::Eligibility check_eligibility(const std::string& solver, const Scene& scene, const Code& code);

@@ -45,6 +45,9 @@ class Integration {
   std::unique_ptr<Bound> bound_;
 };
 
+/// Integrates the scene. Throws Error{stage "run"} for a solver that does not exist or needs a step.
+RunResult integrate_scene(const RunRequest& request);
+
 /// eom::hybrid::run, instantiated once.
 eom::hybrid::RunResult run_problem(const eom::hybrid::Problem& problem);
 

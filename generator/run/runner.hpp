@@ -26,9 +26,7 @@ using eom::hybrid::WatchedEvent;
 
 /// The compiled model of a run, with its description. It has `mass` and `constraints` only if there are multipliers,
 /// and functions for a solver only if they were requested.
-struct Code : eom::hybrid::Code {
-  std::vector<symbolic::Ref> kink_values = {};  // as expressions
-};
+using eom::hybrid::Code;
 
 struct Invariant {
   std::string name;
@@ -133,9 +131,6 @@ struct RunRequest {
     return fixed ? std::numeric_limits<std::size_t>::max() : eom::Options{}.max_steps;
   }
 };
-
-/// Integrates the scene. Throws Error{stage "run"} for a solver that does not exist or needs a step.
-RunResult integrate_scene(const RunRequest& request);
 
 /// The solver for a request, and the reason for it; `auto` may change the method during the run if the system is stiff.
 std::pair<std::string, SolverReason::Basis> choose_solver(const std::string& asked, const Scene& scene);

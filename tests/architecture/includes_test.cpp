@@ -257,6 +257,36 @@ TEST_CASE("the command line includes only registries and values of the computing
   }
 }
 
+TEST_CASE("commands and the library get compiled code and runs from pipeline::Compilation and BoundRun, nowhere else") {
+  // The headers that make code, load it, bind it to a run or integrate it. Each with the files of clients that may
+  // include it.
+  const std::map<std::string, std::set<std::string>> headers = {
+      {"pipeline/code.hpp", {}},
+      {"jit/machine_code.hpp", {}},
+      {"jit/lanes.hpp", {"eomgen/rhs_lanes.hpp"}},  // batches of CompiledModel
+      {"emit/shared_library/loaded_model.hpp", {}},
+      {"emit/shared_library/loaded_batch.hpp", {}},
+      {"emit/shared_library/build.hpp", {"bench/libraries.cpp"}},  // adapters of other libraries, no models
+      {"run/bind.hpp", {"stress/start.cpp"}},                      // constraints of a start
+      // Requests of BoundRun, observed step by step.
+      {"run/integration.hpp",
+       {"analysis/benchmark.cpp", "analysis/stress_test.cpp", "bench/measure.cpp", "stress/reference_solution.hpp"}},
+  };
+  std::map<std::string, std::set<std::string>> found;
+  for (const char* folder : {"cli", "analysis", "bench", "stress", "eomgen"}) {
+    for (const fs::path& file : files_below(source_root / "generator" / folder, {".cpp", ".hpp"})) {
+      for (const Include& include : parse_includes(read_text(file)))
+        if (headers.count(include.path) == 1)
+          found[include.path].insert(fs::relative(file, source_root / "generator").generic_string());
+    }
+  }
+  for (const auto& [header, clients] : headers) {
+    CAPTURE(header);
+    CHECK(fs::exists(source_root / "generator" / header));
+    CHECK(found[header] == clients);
+  }
+}
+
 TEST_CASE("no file contains a path of the machine on which it was written or built") {
   // Split into two parts, because the test checks this file too.
   const std::vector<std::string> never = {
