@@ -93,7 +93,8 @@ std::pair<std::string, SolverReason::Basis> choose_solver(const std::string& ask
     return {asked, Basis::requested};
   }
   if (scene.step > 0) return {"rk4", Basis::fixed_step};
-  return {eom::Automatic::name, scene.rtol > 1e-6 ? Basis::loose_tolerance : Basis::tight_tolerance};
+  return {eom::Automatic::name,
+          scene.rtol > eom::Automatic::rtol_of_dopri5 ? Basis::loose_tolerance : Basis::tight_tolerance};
 }
 
 RunResult integrate_scene(const RunRequest& request) {

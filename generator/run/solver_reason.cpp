@@ -13,8 +13,8 @@ const char* words(Basis basis) {
   switch (basis) {
     case Basis::requested: return "as asked for";
     case Basis::fixed_step: return "a fixed step is given";
-    case Basis::loose_tolerance: return "rtol is above 1e-6, where order 5 needs the fewest evaluations";
-    case Basis::tight_tolerance: return "rtol is 1e-6 or below, where order 8 needs the fewest evaluations";
+    case Basis::loose_tolerance: return "rtol is above 1e-4, where order 5 needs the fewest evaluations";
+    case Basis::tight_tolerance: return "rtol is 1e-4 or below, where order 8 needs the fewest evaluations";
     case Basis::empty_span: return "the run ends at its start";
   }
   return "";
