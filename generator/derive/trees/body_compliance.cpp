@@ -75,7 +75,6 @@ class Compliance {
     joints_.resize(count);
     rotating_.resize(count);
     for (std::size_t l = 0; l < count; ++l) rotating_[l] = own_response(l);
-    complete_ = rotating_;
     for (std::size_t l = count; l-- > 0;) inwards(l);
     inverse_.assign(n_ * n_, dag_.zero());
     for (std::size_t l = 0; l < count; ++l) outwards(l);
@@ -156,7 +155,6 @@ class Compliance {
   /// Eliminates the freedoms of a link from its rotating response, and passes the rest to the parent.
   void inwards(std::size_t l) {
     const BodyLink& link = tree_.links[l];
-    complete_[l] = rotating_[l];
     RotatingResponse& B = rotating_[l];
     for (const Eliminated& e : articulated_.eliminated[l]) {
       Joint joint{e.index, joined(e.angular, e.linear), {}, joined(e.N, e.F), e.D, {}, 0};
@@ -305,21 +303,26 @@ class Compliance {
   /// The accelerations of all coordinates.
   std::vector<Ref> respond(const Source& source) {
     const std::size_t l = source.link;
-    const Articulated& body = articulated_.bodies[l];
+    const Articulated& body = articulated_.reduced[l];
     const Vec3 zeta = angular(source.acceleration), a = linear(source.acceleration);
-    Vec6 p = joined(
-        plus(plus(times(dag_, body.I, zeta), times(dag_, body.H, a)), times(dag_, complete_[l].moment, source.omega)),
-        plus(plus(times(dag_, transposed(body.H), zeta), times(dag_, body.M, a)),
-             times(dag_, complete_[l].force, source.omega)));
     std::vector<Ref> u(joints_[l].size());
+    Vec6 applied = none();
     for (std::size_t f = 0; f < u.size(); ++f) {
       const Joint& joint = joints_[l][f];
-      const Ref force = dag_.sub(source.force[f], dot6(joint.s, p));
-      u[f] = dag_.div(force, joint.D);
+      const Ref force = dag_.sub(source.force[f], dot6(joint.s, applied));
+      const Ref moved = dag_.add(dot6(joint.c, source.acceleration), dot(dag_, joint.rotation, source.omega));
+      u[f] = dag_.sub(dag_.div(force, joint.D), moved);
       for (std::size_t i = 0; i < 6; ++i) {
-        p[i] = i == joint.axis ? source.force[f] : dag_.add(p[i], dag_.mul(joint.c[i], force));
+        applied[i] = i == joint.axis ? source.force[f] : dag_.add(applied[i], dag_.mul(joint.c[i], force));
       }
     }
+    // The rest of the inertia is 0 along the freedoms, so that fewer of its entries are needed than before them.
+    const RotatingResponse& rest = rotating_[l];
+    Vec6 p =
+        joined(plus(plus(times(dag_, body.I, zeta), times(dag_, body.H, a)), times(dag_, rest.moment, source.omega)),
+               plus(plus(times(dag_, transposed(body.H), zeta), times(dag_, body.M, a)),
+                    times(dag_, rest.force, source.omega)));
+    p = sum(p, applied);
     p = sum(p, source.passed);
     std::vector<Ref> result(n_, dag_.zero());
     for (const Reach& reach : reaches_before_[l]) result[reach.index] = dag_.neg(dot6(reach.A, p));
@@ -397,8 +400,8 @@ class Compliance {
   // Per link: along its axes.
   std::vector<Vec3> velocity_;  // of the origin, twice
   std::vector<std::vector<Joint>> joints_;
-  std::vector<RotatingResponse> rotating_, complete_;  // after and before the elimination of the own freedoms
-  std::vector<Mat6> before_, compliance_;              // before and after the own freedoms
+  std::vector<RotatingResponse> rotating_;  // after the elimination of the own freedoms
+  std::vector<Mat6> before_, compliance_;   // before and after the own freedoms
   std::vector<std::vector<Reach>> reaches_before_, reaches_;
   std::vector<Ref> inverse_;
 };

@@ -20,7 +20,7 @@ class Elimination {
 
   ArticulatedTree bodies() {
     inwards();
-    return {std::move(complete_), std::move(eliminated_)};
+    return {std::move(bodies_), std::move(eliminated_)};
   }
 
  private:
@@ -29,10 +29,8 @@ class Elimination {
   void inwards() {
     const std::size_t count = tree_.links.size();
     for (std::size_t l = 0; l < count; ++l) bodies_.push_back(rigid(l));
-    complete_.resize(count);
     eliminated_.resize(count);
     for (std::size_t l = count; l-- > 0;) {
-      complete_[l] = bodies_[l];
       eliminate(l);
       if (tree_.links[l].parent >= 0) pass(l);
     }
@@ -150,7 +148,7 @@ class Elimination {
   const BodyTree& tree_;
   const std::vector<LinkMotion>& motion_;
   system::Solution result_;
-  std::vector<Articulated> bodies_, complete_;
+  std::vector<Articulated> bodies_;
   std::vector<std::vector<Eliminated>> eliminated_;
   std::vector<std::pair<Vec3, Vec3>> acceleration_;
 };

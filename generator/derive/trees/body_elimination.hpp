@@ -24,10 +24,10 @@ struct Eliminated {
   std::size_t index;
 };
 
-/// One entry per link: its inertia before its own accelerations are eliminated, and their equations in the order of its
+/// One entry per link: its inertia after its own accelerations are eliminated, and their equations in the order of its
 /// freedoms.
 struct ArticulatedTree {
-  std::vector<Articulated> bodies;
+  std::vector<Articulated> reduced;
   std::vector<std::vector<Eliminated>> eliminated;
 };
 
