@@ -5,7 +5,8 @@
 
 Each row is a model FAMILY:N of bench/growth_models.py, or a robot of FOLDER (NAME.urdf, on a floating base): operations
 of the right-hand side and of its derivatives, the median time of one call of each (gcc -O3 -march=native), and processor
-seconds of the compiler at -O2 for all of them. `adjoint` is v^T df/dx, v^T df/dp and v^T df/du. With --write the table in
+seconds of the compiler at -O2 for all of them. `adjoint` is v^T df/dx, v^T df/dp and v^T df/du. `Pinocchio/jac` is the
+time of computeABADerivatives in times of `jac`, from times measured side by side elsewhere. With --write the table in
 docs/benchmarks.md is replaced.
 """
 import json
@@ -23,6 +24,9 @@ BEGIN, END = "<!-- derivatives: written by bench/derivatives.py -->", "<!-- end 
 MODELS = ("arm:7", "arm:20", "arm:50", "chain:20", "beam:40", "n_four_bar:40")
 FLOATING = ("talos", "solo12")
 FUNCTIONS = ("jac", "jac_p", "jvp", "vjp", "adjoint", "inverse")
+LEFT_OUT = {"arm:50": ("jac_p",)}  # 301 parameters: about a million operations
+# Pinocchio 3.7, computeABADerivatives, over the time of `rhs` on the same machine (-O3 -march=native).
+PINOCCHIO = {"arm:7": 3307 / 128, "arm:20": 10770 / 704}
 DRIVER = r"""
 #define _POSIX_C_SOURCE 199309L
 #include "NAME.h"
@@ -76,7 +80,7 @@ int main(void) {
   return 0;
 }
 """
-COLUMNS = ("model", "N", "P", "flops: rhs", *FUNCTIONS, "ns: rhs", "M and h", *FUNCTIONS, "jac/rhs", "adjoint/rhs", "compile, s")
+COLUMNS = ("model", "N", "P", "flops: rhs", *FUNCTIONS, "ns: rhs", "M and h", *FUNCTIONS, "jac/rhs", "adjoint/rhs", "Pinocchio/jac", "compile, s")
 
 
 def flops(source, function):
@@ -97,7 +101,8 @@ def row(eomgen, compiler, what, robots, folder):
     name = re.sub("[^a-z0-9]", "_", what)
     text, spread = model_text(eomgen, what, robots)
     (folder / f"{name}.toml").write_text(text)
-    functions = ",".join(("mass", *FUNCTIONS))
+    left_out = LEFT_OUT.get(what, ())
+    functions = ",".join(("mass", *(f for f in FUNCTIONS if f not in left_out)))
     _, _, code, text = measured([eomgen, "emit", folder / f"{name}.toml", "-o", folder, "--target", "c", "--with", functions, "--json"])
     if code != 0:
         return [what, "too long" if code is None else f"exit code {code}"]
@@ -109,13 +114,18 @@ def row(eomgen, compiler, what, robots, folder):
     states, parameters = (int(re.search(rf"{name}_{size} = (\d+)", header).group(1)) for size in ("states", "parameters"))
     values = {"NAME": name, "STATES": states, "PARAMETERS": parameters, "SPREAD": spread, "CALLS": max(20, 200_000 // states**2)}
     driver = DRIVER
+    for function in left_out:
+        driver = re.sub(rf"return NAME_{function}\(.*\);", "return 0;", driver)
     for key, value in values.items():
         driver = driver.replace(key, str(value))
     (folder / "driver.c").write_text(driver)
     subprocess.run([compiler, "-O3", "-march=native", "-I", folder, "-o", folder / "driver", folder / "driver.c", folder / f"{name}.c", "-lm"], check=True)
     times = json.loads(subprocess.run([folder / "driver"], check=True, capture_output=True, text=True).stdout)
-    return [what, states, parameters, flops(source, "rhs"), *(flops(source, f) for f in FUNCTIONS), *times,
-            f"{times[2] / times[0]:.1f}", f"{times[6] / times[0]:.1f}", f"{compiling:.1f}"]
+    named = zip(("rhs", "mass", *FUNCTIONS), times)
+    ratio = f"{PINOCCHIO[what] * times[0] / times[2]:.1f}" if what in PINOCCHIO else ""
+    return [what, states, parameters, *("" if f in left_out else flops(source, f) for f in ("rhs", *FUNCTIONS)),
+            *("" if f in left_out else time for f, time in named), f"{times[2] / times[0]:.1f}", f"{times[6] / times[0]:.1f}", ratio,
+            f"{compiling:.1f}"]
 
 
 def table(eomgen, arguments):
