@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shapes of a [[contact]]: of bodies that touch a plane, and of fixed obstacles that particles and balls touch. In:
-// names and sizes as written, in parentheses. Out: expressions of the model language. Each kind is one line of a table.
+// Shapes of a [[contact]]: of bodies that touch a plane, of fixed obstacles that particles and balls touch, and of
+// capsules and balls that touch one another. In: names and sizes as written, in parentheses. Out: expressions of the
+// model language. Each kind of body and obstacle is one line of a table.
 #pragma once
 
 #include <fmt/format.h>
@@ -129,6 +130,36 @@ inline const std::array<Obstacle, 5>& obstacles() {
        }},
   }};
   return all;
+}
+
+/// A segment along e3 with a radius around its centre; a ball without a length. Sizes are expressions.
+struct Capsule {
+  std::string centre, radius, length;
+  bool is_ball() const { return length.empty(); }
+};
+
+/// The distance of two capsules: |d + s u - t v| less both radii, with the nearest points at s and t from the centres.
+/// The nearest points of the lines give s first, then t and s are nearest to one another within the segments. The last
+/// step is exact, so that a term below the rounding of sin^2 keeps parallel axes defined.
+inline std::string gap_of_capsules(const Capsule& a, const Capsule& b) {
+  const auto within = [](const std::string& x, const Capsule& c) {
+    return fmt::format("max(-{1}/2, min({1}/2, {0}))", x, c.length);
+  };
+  const std::string d = fmt::format("({} - {})", a.centre, b.centre);
+  const std::string u = a.centre + ".e3", v = b.centre + ".e3";
+  const std::string along_u = fmt::format("dot({}, {})", u, d), along_v = fmt::format("dot({}, {})", v, d);
+  std::string apart = d;
+  if (a.is_ball() != b.is_ball()) {
+    apart += a.is_ball() ? fmt::format(" - {}*{}", within(along_v, b), v)
+                         : fmt::format(" + {}*{}", within("-" + along_u, a), u);
+  } else if (!a.is_ball()) {
+    const std::string cosine = fmt::format("dot({}, {})", u, v);
+    const std::string on_lines =
+        fmt::format("({0}*{1} - {2})/(dot(cross({3}, {4}), cross({3}, {4})) + 1e-14)", cosine, along_v, along_u, u, v);
+    const std::string t = within(fmt::format("{}*{} + {}", cosine, within(on_lines, a), along_v), b);
+    apart += fmt::format(" + {}*{} - {}*{}", within(fmt::format("{}*{} - {}", cosine, t, along_u), a), u, t, v);
+  }
+  return fmt::format("norm({}) - {} - {}", apart, a.radius, b.radius);
 }
 
 }  // namespace eomgen::model

@@ -41,10 +41,11 @@ class ContactTable {
       std::vector<std::string_view> further;
       void (ContactTable::*expand)(const Value&);
     };
-    const std::array<Kind, 6> kinds{{{"points", {"body", "on", "friction"}, &ContactTable::points},
+    const std::array<Kind, 7> kinds{{{"points", {"body", "on", "friction"}, &ContactTable::points},
                                      {"corners", {"body", "on", "friction"}, &ContactTable::corners},
                                      {"shape", {"body", "on", "friction"}, &ContactTable::shape},
                                      {"spheres", {"radius", "friction"}, &ContactTable::spheres},
+                                     {"capsules", {"friction"}, &ContactTable::capsules},
                                      {"particles", {"radius", "on", "friction"}, &ContactTable::particles},
                                      {"limits", {}, &ContactTable::limits}}};
     const Kind* chosen = nullptr;
@@ -56,7 +57,7 @@ class ContactTable {
     if (chosen == nullptr)
       fail(table_, "does not state what touches what",
            "add points = { .. }, corners = [a, b, c] or shape = { .. } of a body, spheres = [\"A\", \"B\", ..], "
-           "particles = [\"P\", ..], or limits = { q = [a, b] }");
+           "capsules = { A = [R, L], .. }, particles = [\"P\", ..], or limits = { q = [a, b] }");
     std::vector<std::string> known{"name", "restitution", chosen->key};
     known.insert(known.end(), chosen->further.begin(), chosen->further.end());
     for (const Entry& entry : table_.entries) {
@@ -236,6 +237,32 @@ class ContactTable {
         Value& constraint = begin(value, names[i].text + "_" + names[k].text);
         constraint.entries.push_back(
             {"holonomic", value.span, text_value(value, fmt::format("sqrt(dot({0}, {0})) - 2*{1}", apart, radius))});
+      }
+    }
+  }
+
+  void capsules(const Value& value) {
+    if (!value.is(Value::Kind::table) || value.entries.size() < 2)
+      fail(value, "needs two capsules or balls", "write capsules = { A = [\"R\", \"L\"], ball = \"R\", .. }");
+    if (const Entry* friction = table_.entry("friction"))
+      source_.fail(friction->span, "capsules of one [[contact]] have no friction",
+                   "remove friction; capsules on a plane (shape = { capsule = [R, L] }) can have it");
+    std::vector<Capsule> all;
+    for (const Entry& entry : value.entries) {
+      if (!entry.value.is(Value::Kind::array)) {
+        all.push_back({entry.key, expression(entry.value, "the radius"), ""});
+        continue;
+      }
+      if (entry.value.items.size() != 2)
+        fail(entry.value, fmt::format("gives {} sizes of {}", entry.value.items.size(), quote(entry.key)),
+             "write [radius, length between the centres of the ends], or the radius of a ball alone");
+      all.push_back(
+          {entry.key, expression(entry.value.items[0], "the radius"), expression(entry.value.items[1], "the length")});
+    }
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      for (std::size_t k = i + 1; k < all.size(); ++k) {
+        begin(value, all[i].centre + "_" + all[k].centre)
+            .entries.push_back({"holonomic", value.span, text_value(value, gap_of_capsules(all[i], all[k]))});
       }
     }
   }
