@@ -28,7 +28,9 @@ def model(discs, fall, contacts=True):
     if contacts:
         names = ", ".join(f'"d{k}"' for k in numbers)
         limits = ", ".join(f'x{k} = ["R", "W - R"]' for k in numbers)
-        lines += ["[[contact]]", 'name = "pair"', f"spheres = [{names}]", 'radius = "R"', 'restitution = "e"']
+        if discs > 1:
+            lines += ["[[contact]]", 'name = "pair"', f"spheres = [{names}]", 'radius = "R"',
+                      'restitution = "e"']
         lines += ["[[contact]]", 'name = "wall"', f"limits = {{ {limits} }}", 'restitution = "e"']
         for k in numbers:
             lines += ["[[constraint]]", f'name = "floor{k}"', f'holonomic = "z{k} - R"', 'holds = "unilateral"',
