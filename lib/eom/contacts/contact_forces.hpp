@@ -210,6 +210,7 @@ class ContactForces {
     if (all_open()) {
       margins_.assign(set_.contacts.size(), 1.0);
       force_size_.assign(set_.contacts.size(), 0.0);
+      force_per_acceleration_.assign(set_.contacts.size(), 0.0);
       std::fill(lambda_.begin(), lambda_.end(), 0.0);
       std::fill(phi_.begin(), phi_.end(), std::array<double, 2>{});
       write_modes(u);
@@ -229,6 +230,7 @@ class ContactForces {
     }
     const auto count = static_cast<Index>(patterns.size());
     force_size_.assign(set_.contacts.size(), 0.0);
+    force_per_acceleration_.assign(set_.contacts.size(), 0.0);
     Matrix W(count, count);
     Vector right(count);
     for (Index k = 0; k < count; ++k) {
@@ -236,10 +238,11 @@ class ContactForces {
       for (Index i = 0; i < count; ++i) W(i, k) = change(*rows_[static_cast<std::size_t>(i)], response_);
       const Row& row = *rows_[static_cast<std::size_t>(k)];
       right(k) = -acceleration(row, free_);
-      const double share = std::abs(W(k, k));
-      const double size = std::abs(c_[row.bias()]) + terms(row, free_.data());
-      largest_acceleration_ = std::max(largest_acceleration_, size);
-      if (share > 0) force_size_[patterns[static_cast<std::size_t>(k)].contact] += size / share;
+      const double share = std::abs(W(k, k)), size = observe_acceleration(row);
+      const std::size_t j = patterns[static_cast<std::size_t>(k)].contact;
+      if (!(share > 0)) continue;
+      force_size_[j] += size / share;
+      force_per_acceleration_[j] = std::max(force_per_acceleration_[j], 1 / share);
     }
     margins_.assign(set_.contacts.size(), 1.0);
     std::fill(lambda_.begin(), lambda_.end(), 0.0);
@@ -280,8 +283,16 @@ class ContactForces {
     const Description& at = contact(j);
     return at.has_constraint() ? c_[at.normal_scale] * lambda_[j] : std::abs(c_[at.given_normal]);
   }
-  /// The largest sum of terms of the acceleration of a closed contact since reset().
-  double largest_acceleration() const { return largest_acceleration_; }
+  /// Smaller accelerations of gaps and slip are rounding: a share of the largest sum of terms, of any contact, since
+  /// reset().
+  double acceleration_rounding() const { return 1e-13 * largest_acceleration_; }
+  /// Observes the accelerations of all contacts, after evaluate_free() and evaluate_rows().
+  void observe_accelerations() {
+    for (const Description& at : set_.contacts)
+      if (at.has_constraint()) observe_acceleration(at.normal);
+  }
+  /// The force of contact j that changes the acceleration of its gap by 1, of the last solve(); 0 if it is open.
+  double force_per_acceleration(std::size_t j) const { return force_per_acceleration_[j]; }
   /// The size of the forces that balance the terms of the accelerations of a contact: the scale of their rounding.
   double force_size(std::size_t j) const { return force_size_[j]; }
   /// Of a sliding contact: the derivative of the acceleration of its gap with respect to lambda. Not positive:
@@ -291,12 +302,18 @@ class ContactForces {
   bool has_several(std::size_t j) const { return several_.size() > j && several_[j]; }
   /// Whether the forces of some state were not unique.
   bool undetermined() const { return undetermined_; }
-  /// Begins anew with undetermined() and largest_acceleration().
+  /// Begins anew with undetermined() and acceleration_rounding().
   void reset() { undetermined_ = false, largest_acceleration_ = 0; }
 
   static constexpr int code_not_finite = 5;  // as in the C ABI
 
  private:
+  /// The sum of the terms of the acceleration of a row.
+  double observe_acceleration(const Row& row) {
+    const double size = std::abs(c_[row.bias()]) + terms(row, free_.data());
+    if (std::isfinite(size)) largest_acceleration_ = std::max(largest_acceleration_, size);
+    return size;
+  }
   static void push(double* u, const Pattern& pattern, double amount) {
     for (const auto& [input, share] : pattern.inputs) u[input] += share * amount;
   }
@@ -351,7 +368,7 @@ class ContactForces {
   System& system_;
   std::size_t n_;
   std::vector<ContactState> states_;
-  std::vector<double> c_, lambda_, margins_, force_size_;
+  std::vector<double> c_, lambda_, margins_, force_size_, force_per_acceleration_;
   std::vector<std::array<double, 2>> phi_;
   std::vector<double> amplitude_;
   std::vector<bool> several_;

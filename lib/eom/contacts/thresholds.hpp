@@ -17,10 +17,9 @@ namespace eom::contacts {
 struct Tolerances {
   double speed = 1e-12;  // of gaps and slip
   double slip = 1e-12;   // in two directions
-  double acceleration = 0;
 };
 
-/// Bounds below which a gap, a speed or an acceleration counts as zero, from the sizes met during the run.
+/// Bounds below which a gap or a speed counts as zero, from the sizes met during the run.
 class Thresholds {
  public:
   /// Sizes since the start of a run. Terms: the sums of the absolute values of the terms of a gap.
@@ -69,7 +68,9 @@ class Thresholds {
     return std::max({rounding, atol_, std::max(share * rtol_, roundings) * sizes_.speed});
   }
   double speed_rounding() const { return 1e-14 * sizes_.speed; }
-  double force_rounding(std::size_t j) const { return 1e-11 * sizes_.force[j]; }
+  double force_rounding(std::size_t j) const {
+    return std::max(1e-11 * sizes_.force[j], forces_.acceleration_rounding() * forces_.force_per_acceleration(j));
+  }
   double gap_rounding(std::size_t j, const double* x) const {
     constexpr double roundings = 16, of_gaps = 3e-14;
     const double terms = std::max(sizes_.terms[j], forces_.terms(forces_.contact(j).normal, x));
@@ -90,11 +91,7 @@ class Thresholds {
     }
     return least;
   }
-  Tolerances tolerances() const {
-    constexpr double roundings = 1e-13;
-    return {negligible_speed(), std::max(negligible_speed(), forces_.least_slip()),
-            roundings * forces_.largest_acceleration()};
-  }
+  Tolerances tolerances() const { return {negligible_speed(), std::max(negligible_speed(), forces_.least_slip())}; }
 
  private:
   static void grow(double& largest, double value) {

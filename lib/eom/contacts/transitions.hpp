@@ -92,7 +92,7 @@ class Transitions {
     if (hint.slips) broken[hint.contact] = true;
     for (std::size_t round = 0; round <= forces_.set().contacts.size(); ++round) {
       bool again = false;
-      const Result result = settle(t, x, u, hint, tolerances, broken, again);
+      const Result result = settle(t, x, u, hint, broken, again);
       if (result.outcome != Outcome::done || !again) return result;
     }
     return {};
@@ -252,11 +252,11 @@ class Transitions {
 
   /// One complementarity problem on accelerations. `again`: a contact has just begun to slide, whose coefficient
   /// changes.
-  Result settle(double t, const double* x, double* u, const Hint& hint, const Tolerances& tolerances,
-                std::vector<bool>& broken, bool& again) {
+  Result settle(double t, const double* x, double* u, const Hint& hint, std::vector<bool>& broken, bool& again) {
     std::vector<double> inputs(u, u + input_count_);
     double* const v = inputs.data();
     if (const int code = forces_.evaluate_free(t, x, v); code != 0) return {Outcome::no_value, code, none};
+    forces_.observe_accelerations();
     ContactProblem rows(forces_, t, x, v);
     for (std::size_t j = 0; j < forces_.set().contacts.size(); ++j) {
       if (!forces_.is_closed(j)) continue;
@@ -280,7 +280,7 @@ class Transitions {
     favour(rows, size, hint);
     const FrictionForces found = solve(problem);
     if (!found.found) return {Outcome::no_solution, 0, rows.fastest_contact()};
-    const double least = std::max(count > 0 ? negligible * size.maxCoeff() : 0.0, tolerances.acceleration);
+    const double least = std::max(count > 0 ? negligible * size.maxCoeff() : 0.0, forces_.acceleration_rounding());
     for (Index i = 0; i < count; ++i) {
       const std::size_t j = rows.contact(i);
       // One of the two is 0, but for rounding.
