@@ -68,14 +68,14 @@ JumpFunctions jump_functions(const system::EquationSystem& s) {
   symbolic::Dag& dag = *s.dag;
   JumpFunctions result;
   std::vector<Ref> roots;
-  const auto add = [&](Ref r, Quantity what, const std::string& name = "") {
+  const auto add = [&](Ref r, Quantity what, const std::string& name = "", std::size_t constraint = 0) {
     roots.push_back(r);
-    result.functions.push_back({what, name});
+    result.functions.push_back({what, name, constraint});
   };
   add(s.potential, Quantity::potential);
-  for (const Ref psi : s.psi) add(psi, Quantity::psi);
-  for (const Ref r : s.A) add(r, Quantity::row);
-  for (const Ref r : s.b) add(r, Quantity::rate);
+  for (std::size_t k = 0; k < s.psi.size(); ++k) add(s.psi[k], Quantity::psi, "", k);
+  for (std::size_t k = 0; k < s.A.size(); ++k) add(s.A[k], Quantity::row, "", k / s.free.size());
+  for (std::size_t k = 0; k < s.b.size(); ++k) add(s.b[k], Quantity::rate, "", k);
   for (const system::Output& output : s.outputs) {
     using system::OutputKind;
     if (output.kind == OutputKind::coordinate || output.kind == OutputKind::position)

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Models whose contacts are solved for at every evaluation: ladder, rocking block, cradle, boxes, dominoes, woodpecker.
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <Eigen/Dense>
 #include <numbers>
 
+#include "models/contact_runs.hpp"
 #include "models/rough.hpp"
 
 using namespace eomgen;
@@ -94,6 +96,21 @@ TEST_CASE("newtons_cradle: pair by pair the last ball takes all") {
     for (const char* resting : {"th1", "th2", "th3", "th4"}) CHECK(std::abs(sequence.rows.at(i, resting)) < 1e-9);
   }
   CHECK(sequence.final("energy") == doctest::Approx(sequence.rows.at(0, "energy")).epsilon(1e-10));
+}
+
+TEST_CASE("newtons_cradle: balls that hang at rest do not open and close by rounding, at any tolerance") {
+  for (const double rtol : all_tolerances) {
+    CAPTURE(rtol);
+    const FinishedRun run = run_rough("newtons_cradle", "default", at_tolerance(rtol));
+    const std::vector<run::RunEvent> events = events_of(run);
+    REQUIRE(events.size() == 16);  // four impacts, each along the whole row
+    for (std::size_t i = 0; i < events.size(); ++i) {
+      const bool from_left = i / 4 % 2 == 0;
+      const std::size_t pair = from_left ? i % 4 : 3 - i % 4;
+      CHECK(events[i].kind == "contact");
+      CHECK(events[i].name == fmt::format("c{}{}", pair + 1, pair + 2));
+    }
+  }
 }
 
 TEST_CASE("thrown_box: it comes to rest on four corners that share its weight") {

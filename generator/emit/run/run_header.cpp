@@ -53,7 +53,8 @@ std::string text(const eom::hybrid::Signal& signal) {
 }
 std::string text(const eom::hybrid::JumpFunctions::Function& function) {
   static constexpr std::array<const char*, 7> kinds{"potential", "momentum", "psi", "row", "rate", "place", "velocity"};
-  return fmt::format("{{Quantity::{}, {}}}", kinds.at(static_cast<std::size_t>(function.what)), text(function.name));
+  return fmt::format("{{Quantity::{}, {}{}}}", kinds.at(static_cast<std::size_t>(function.what)), text(function.name),
+                     function.constraint == 0 ? "" : fmt::format(", {}", function.constraint));
 }
 std::string text(const eom::hybrid::Range& r) { return fmt::format("{{{}, {}}}", number(r.lower), number(r.upper)); }
 std::string text(const eom::hybrid::OwnOutputs& own) {

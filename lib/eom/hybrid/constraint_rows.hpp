@@ -68,6 +68,8 @@ class ConstraintRows {
   /// Sum of the sizes of the terms of a linearised position constraint: sum |A_i q_i|. NaN without a value.
   double terms(double t, const double* x, const double* u, std::size_t row);
 
+  /// Whether an active constraint is that of an open contact.
+  bool is_open(std::size_t active_constraint) const;
   /// Largest |psi|, |f . qdot + b| of a state; infinite if one has no value. Integrals are monitored as invariants.
   double defect(double t, const double* x);
 
@@ -88,7 +90,6 @@ class ConstraintRows {
   std::size_t own_size() const { return order_.size() + integrals_.size() + slips_.size(); }
   std::size_t gap_rows() const { return contacts_ != nullptr ? contacts_->gap_rows() : 0; }
   int fill_contacts(double t, const double* x, double* psi, double* A, double* b) const;
-  bool is_open(std::size_t active_constraint) const;
   int constraints(double t, const double* x);
   void fill_integrals(const double* x, double* psi, double* A, double* b) const;
   void fill_slips(const double* x, double* psi, double* A, double* b) const;

@@ -356,7 +356,8 @@ inline EventAction Integration::handle_event(const EventPoint& point, const OnEv
   const EventFunctions& functions = context_.events;
   if (i >= functions.first_jump()) {
     jump_ = context_.events.jumps().cross_surface({point.t, point.x, context_.model.inputs(point.t)},
-                                                  i - functions.first_jump());
+                                                  i - functions.first_jump(),
+                                                  [&](std::size_t k) { return context_.rows.is_open(k); });
     return !jump_ ? EventAction::resume : EventAction::stop;
   }
   if (i >= functions.first_solved_contact()) return change_solved_contact(point, event);

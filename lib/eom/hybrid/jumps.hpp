@@ -102,8 +102,9 @@ class Jumps {
     for (std::size_t i = 0; i < surfaces_.size(); ++i) g[i] = code_.surface(surfaces_[i]);
   }
 
-  /// The jump at a surface, or none.
-  Reason cross_surface(const MotionPoint& at, std::size_t surface) {
+  /// The jump at a surface, or none. is_open(k): active constraint k does not act, and may jump.
+  template <class IsOpen>
+  Reason cross_surface(const MotionPoint& at, std::size_t surface, IsOpen&& is_open) {
     std::array<std::vector<double>, 2> sides;
     for (const int side : {0, 1}) {
       for (std::size_t k = 0; k < code_.kinks(); ++k) {
@@ -117,7 +118,11 @@ class Jumps {
     const Sizes size = sizes(sides[0], sides[1], at.x);
     for (std::size_t i = 0; i < of_.functions.size(); ++i) {
       const double change = sides[1][i] - sides[0][i];
-      if (!(std::abs(change) > rounding * size[static_cast<std::size_t>(of_.functions[i].what)])) continue;
+      const JumpFunctions::Function& function = of_.functions[i];
+      if (!(std::abs(change) > rounding * size[static_cast<std::size_t>(function.what)])) continue;
+      const bool constrains =
+          function.what == Quantity::psi || function.what == Quantity::row || function.what == Quantity::rate;
+      if (constrains && is_open(function.constraint)) continue;
       return {Reason::Kind::branch_jump, at.t, change, name(i)};
     }
     return {};

@@ -98,7 +98,8 @@ struct JumpFunctions {
   /// One function.
   struct Function {
     Quantity what = Quantity::potential;
-    std::string name = {};  // of a position or a velocity
+    std::string name = {};       // of a position or a velocity
+    std::size_t constraint = 0;  // active one, of psi, row and rate
   };
   std::vector<Function> functions = {};
   expressions::Table values = {};  // one root for each of them
