@@ -96,7 +96,7 @@ class ContactForces {
   // Adds the forces of the current modes to u, whose forces of contacts are 0. Returns whether there are any.
   solve(t, x, u) {
     const count = this.contacts.length, patterns = [], rows = [];
-    Object.assign(this, {lambda: new Float64Array(count), phi: this.contacts.map(() => [0, 0]), margins: new Float64Array(count).fill(1), forceSize: new Float64Array(count)});
+    Object.assign(this, {lambda: new Float64Array(count), phi: this.contacts.map(() => [0, 0]), margins: new Float64Array(count).fill(1), forceSize: new Float64Array(count), forcePerAcceleration: new Float64Array(count)});
     this.contacts.forEach((at, j) => { u[at.mode_input] = this.mode[j].mode; });
     if (this.mode.every((state) => state.mode === 2)) return true;
     if (!this.readRows(t, x, u) || !this.readFree(t, x, u)) return false;
@@ -113,9 +113,10 @@ class ContactForces {
       if (responses.includes(null)) return false;
       const W = rows.map((row) => responses.map((response) => this.change(row, response))), right = rows.map((row) => -this.acceleration(row, this.free));
       patterns.forEach(({j}, k) => {
-        const size = Math.abs(this.c[rows[k].first + 1]) + this.terms(rows[k], this.free), share = Math.abs(W[k][k]);
-        this.largestAcceleration = Math.max(this.largestAcceleration, size);
-        if (share > 0) this.forceSize[j] += size / share;
+        const size = this.observeAcceleration(rows[k]), share = Math.abs(W[k][k]);
+        if (!(share > 0)) return;
+        this.forceSize[j] += size / share;
+        this.forcePerAcceleration[j] = Math.max(this.forcePerAcceleration[j], 1 / share);
       });
       const {x: forces} = leastNorm(W, right);
       patterns.forEach((pattern, k) => {
@@ -128,6 +129,13 @@ class ContactForces {
     this.contacts.forEach((at, j) => this.slips(j).forEach((_, a) => { this.phi[j][a] = u[at.friction_input + a]; }));
     return true;
   }
+  // The sum of the terms of the acceleration of a row. A share of the largest one, of any contact, is rounding.
+  observeAcceleration(row) {
+    const size = Math.abs(this.c[row.first + 1]) + this.terms(row, this.free);
+    if (Number.isFinite(size)) this.largestAcceleration = Math.max(this.largestAcceleration, size);
+    return size;
+  }
+  accelerationRounding() { return 1e-13 * this.largestAcceleration; }
   // s with row = s times the other; 0 if they are not parallel.
   ratio(row, other) {
     const {c} = this, at = (of, k) => c[of.first + 2 + k];

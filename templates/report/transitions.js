@@ -172,6 +172,7 @@ class ContactTransitions extends ContactForces {
   settle(t, x, u, hint, broken) {
     const result = {fault: null, again: false};
     if (!this.readFree(t, x, u)) return {fault: -1, again: false};
+    this.contacts.forEach((at, j) => { if (this.isHeld(j)) this.observeAcceleration(at.normal); });
     const {rows, laws, add, friction, solved} = this.problem(t, x, u);
     this.contacts.forEach((at, j) => {
       if (!this.isClosed(j)) return;
@@ -192,7 +193,7 @@ class ContactTransitions extends ContactForces {
     });
     const problem = solved(q), found = problem.solve();
     if (found === null) return {fault: rows[q.indexOf(Math.min(...q))].j, again: false};
-    const least = Math.max(1e-12 * size, 1e-13 * this.largestAcceleration), slides = (l) => this.isClosed(laws[l].j) && found.speed[l] > least;
+    const least = Math.max(1e-12 * size, this.accelerationRounding()), slides = (l) => this.isClosed(laws[l].j) && found.speed[l] > least;
     rows.forEach(({kind, j}, i) => {
       const separates = !(found.force[i] > 0) || found.velocity[i] > problem.G[i][i] * found.force[i];
       if (kind === "unilateral" && separates && (found.velocity[i] > least || hint.parts && hint.j === j)) this.mode[j].mode = 2;
