@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The vector field with contacts held in their modes.
+#include <stdexcept>
 #include <type_traits>
 #include <utility>
 
@@ -45,7 +46,7 @@ std::vector<T> Flow::tangents(const ValueAndJacobian<T>& s) const {
     }
     T square(0);
     for (std::size_t k = 0; k < 4; ++k) square = square + s.value[first + 2 * (size + 1) + k] * r[k / 2] * r[k % 2];
-    require_domain(square > T(0), "a contact that slides on a curve carries no force");
+    if (!(square > T(0))) throw std::domain_error("'" + curves_[c] + "', which slides on a curve, carries no force");
     const T length = root(square);
     result.insert(result.end(), {r[0] / length, r[1] / length, length});
   }

@@ -119,6 +119,22 @@ TEST_CASE("impulses: a ball takes m (1 + e) times the speed of its fall") {
   }
 }
 
+TEST_CASE("impulses: the sum of bounces that accumulate is that of their geometric series") {
+  const FinishedRun run = test::run_rough("bouncing_ball");
+  const double m = run.parameter("m"), e = run.parameter("e"),
+               first = std::sqrt(2 * run.parameter("g") * run.parameter("h"));
+  std::vector<double> normal;
+  for (const run::RunEvent& event : events_of(run))
+    if (event.kind == "contact") normal.push_back(event.impulses.at(0).normal);
+  REQUIRE(normal.size() > 10);
+  for (std::size_t k = 0; k < normal.size(); ++k) {
+    CAPTURE(k);
+    const double speed = first * std::pow(e, static_cast<double>(k));
+    const double bounces = k + 1 < normal.size() ? 1 + e : (1 + e) / (1 - e);  // the last event has all that follow
+    CHECK(normal[k] == doctest::Approx(m * bounces * speed).epsilon(1e-6));    // speeds of 1e-6 are known to 1e-13
+  }
+}
+
 TEST_CASE("impulses: the force scale of a surface that is not given as a distance") {
   const std::string surface = R"toml(
 [parameters]

@@ -350,6 +350,7 @@ class ContactForces {
       push(u, normal_pattern(pair.stop, false), lambda);
       lambda_[pair.stop] = lambda;
       force_size_[pair.stop] = std::abs(lambda / force) * force_size_[tangent.contact];
+      force_per_acceleration_[pair.stop] = std::abs(lambda / force) * force_per_acceleration_[tangent.contact];
       return;
     }
   }

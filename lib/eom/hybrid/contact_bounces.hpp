@@ -35,6 +35,7 @@ inline ContactModes::MetContacts ContactModes::contacts_met(double t, std::span<
   if (!compute_gap_decelerations(t, x, open, fall) || functions_(t, x.data(), open, g_.data()) != 0 ||
       velocities_.impact(t, after, model_.inputs(t), with_contact_digit(mode(), j, 0), j, restitution_[j]) != 0)
     return result;
+  velocities_.clear_impulses();  // that impact was a trial
   const Motion motion{this};
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (i == j || !contacts[i].unilateral) continue;
