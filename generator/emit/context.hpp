@@ -69,6 +69,7 @@ struct EmissionContext {
   std::vector<Quantity> coordinates;  // all of the model, in declared order; those not in Program::free are eliminated
   std::vector<Quantity> parameters;   // all of the model, in declared order: the array p
   std::vector<Quantity> inputs;       // the array u
+  std::vector<std::string> varying_inputs = {};  // those that vary in time in the default scene
   std::vector<Quantity> states;  // of first order, all of the model; those in Program::states follow the velocities
   std::string start_parameter;   // name of the parameter for the start time; empty if none
   std::vector<EventDescription> events;    // all of the model, in declared order

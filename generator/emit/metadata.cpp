@@ -316,6 +316,7 @@ std::string info_json(const program::Program& program, const EmissionContext& co
                       {"x", context.start},
                       {"p", values(context.parameters)},
                       {"u", values(context.inputs)}};
+  if (!context.varying_inputs.empty()) info["varying_inputs"] = context.varying_inputs;
   json dependent = json::object();
   for (const Quantity& p : context.parameters) {
     if (!p.expression.empty()) dependent[p.name] = p.expression;

@@ -340,6 +340,8 @@ emit::EmissionContext code_context(const DerivedModel& derived, const program::P
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
     const model::Input& input = model.inputs[i];
     context.inputs.push_back({input.name, input.unit.text, "", scene.inputs[i](scene.t0, scene.t0)});
+    if (scene.inputs[i].is_varying() || scene.inputs[i].knots().size() > 1)
+      context.varying_inputs.push_back(input.name);
   }
   context.start_time = scene.t0;
   for (const std::uint32_t i : program.free) context.start.push_back(scene.q[i]);
