@@ -26,6 +26,7 @@ class ScenesReader : private SectionReader {
   InputTable read_csv_table(const Value& table, const Symbol& input, const std::string& what);
   void read_solver(Scene& scene, const Value& value);
   void read_outputs(Scene& scene, const Value& value);
+  bool may_be_conserved(const std::vector<std::string>& parts) const;
   void check_output(const Value& value);
   NodeId positive_number(const Value& value, const std::string& what, std::string_view unit);
   Symbol& coordinate_of_key(const Entry& entry, const std::string& what, std::uint8_t& order);

@@ -106,8 +106,22 @@ void ScenesReader::read_outputs(Scene& scene, const Value& value) {
   }
 }
 
+/// Whether the name is that of a quantity that some models conserve. Which ones this model conserves is known after the
+/// derivation, and the others are refused then.
+bool ScenesReader::may_be_conserved(const std::vector<std::string>& parts) const {
+  if (parts.size() == 1) return parts[0] == "jacobi";
+  if (parts[0] == "linear_momentum" || parts[0] == "angular_momentum") return true;  // along axes, also of bodies
+  if (parts.size() != 2) return false;
+  if (parts[0] == "energy") return parts[1] == "applied";
+  const Symbol* const symbol = scope_.find(parts[1]);
+  if (symbol == nullptr) return false;
+  return (parts[0] == "momentum" && symbol->kind == SymbolKind::coordinate) ||
+         (parts[0] == "integral" && symbol->kind == SymbolKind::constraint);
+}
+
 void ScenesReader::check_output(const Value& value) {
   const std::vector<std::string> parts = split_at_dots(value.text);
+  if (may_be_conserved(parts)) return;
   if (parts.size() == 1 &&
       std::find(built_in_outputs.begin(), built_in_outputs.end(), value.text) != built_in_outputs.end())
     return;
