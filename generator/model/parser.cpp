@@ -286,8 +286,13 @@ Syntax parse_quantity(const SourceText& text) {
                                                  last->word.find_first_of("(),+-<>.") == std::string_view::npos);
     if (unit_like) {
       const std::string hint = unit_hint(last->word);
+      const bool is_name =
+          last->word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") ==
+          std::string_view::npos;
       text.source->fail(text.span(at, last->word.size()), fmt::format("{} is not a unit", quote(last->word)),
-                        hint.empty() ? "write a unit such as m/s^2, N*m, rad/s, or an operator before the name" : hint);
+                        hint.empty() ? "write a unit such as m/s^2, N*m, rad/s, or an operator before the name"
+                        : is_name    ? fmt::format("{}; a product is written with an operator: 2*{}", hint, last->word)
+                                     : hint);
     }
     return parse_expression(text);
   }
