@@ -25,7 +25,7 @@
 #include <utility>
 #include <vector>
 
-#include "eom/modes/contact_state.hpp"
+#include "eom/modes/contact_table.hpp"
 #include "eom/modes/machine.hpp"
 
 namespace eom {
@@ -50,8 +50,6 @@ struct ContactMotion {
   double negligible_speed() const { return 1e-12; }
 };
 
-inline constexpr std::size_t contact_values = 5;
-
 /// Returned by ContactMotion::stop in place of a code.
 inline constexpr int keeps_sliding = -1;
 
@@ -65,6 +63,7 @@ class Contacts {
       : contacts_(std::move(contacts)),
         dx_(states),
         g_(contact_values * contacts_.size()),
+        force_size_(contacts_.size(), 0.0),
         rhs_(std::move(rhs)),
         functions_(std::move(functions)),
         motion_(std::move(motion)) {
@@ -74,7 +73,7 @@ class Contacts {
       if (std::is_same_v<Motion, ContactMotion> && (contact.dimensions == 2 || contact.unilateral))
         throw std::invalid_argument("eom::Contacts: '" + contact.name + "' changes velocities, and no motion is given");
     }
-    make_table();
+    table_ = contact_mode_table(contacts_);
   }
 
   /// Number of event functions: contact_values of each contact.
@@ -102,6 +101,11 @@ class Contacts {
   const Hits& hits() const { return hits_; }
   /// Restores the recorded impacts.
   void set_hits(const Hits& hits) { hits_ = hits; }
+
+  /// Per contact: the largest normal force that a decision has met.
+  const std::vector<double>& force_sizes() const { return force_size_; }
+  /// Restores these forces.
+  void set_force_sizes(const std::vector<double>& sizes) { force_size_ = sizes; }
 
   /// Transforms the functions into the monitored ones: the slip speed in two directions, minus the least one.
   void shift_to_watched(double* g) const {
@@ -188,6 +192,10 @@ class Contacts {
     }
     if (const int code = functions_(point.t, point.x.data(), sticking, g_.data()); code != 0)
       return failed(point, code);
+    if (contacts_[j].unilateral && g_[contact_values * j + 3] < 0) {
+      const int now = consistent_mode(point.t, point.x, sticking), state = contact_digit(now, j);
+      if (state % 3 != 0 || state == 3) return {now, state == 3 ? "lose_contact" : "reverse", name};
+    }
     if (static_law_holds(j)) {
       const int code = contacts_[j].dimensions == 2 ? motion_.stick(point.t, point.x, sticking, j) : 0;
       return code != 0 ? failed(point, code) : Transition{sticking, contacts_[j].rolls ? "roll" : "stick", name};
@@ -226,8 +234,12 @@ class Contacts {
 
   /// Handles an impact at contact j, which is open. It remains open if it bounces.
   Transition apply_impact(double t, std::span<double> x, int mode, std::size_t j, bool bounces = true) {
-    // The gap opens: after an impact its rounding errors cross zero once more.
-    if (bounces && close_together_.empty() && motion_.gap_rate(t, x, j) > motion_.negligible_speed()) return {mode};
+    // The gap opens: after an impact, or after the end of the normal force, its rounding errors cross zero once more.
+    if (bounces && close_together_.empty()) {
+      const double rate = motion_.gap_rate(t, x, j);
+      if (rate > motion_.negligible_speed()) return {mode};
+      if (rate >= -motion_.negligible_speed() && !is_pressed(t, x, mode, j)) return {mode};
+    }
     hits_.add(j);
     if (const std::vector<std::size_t> all = std::exchange(close_together_, {}); !all.empty()) {
       const std::vector<double> before(x.begin(), x.end());
@@ -251,7 +263,14 @@ class Contacts {
   /// The mode in which the closed contacts of `mode` slide or stick according to the velocities.
   int consistent_mode(double t, std::span<double> x, int mode) {
     const auto is_closed = [&](std::size_t j) { return !contacts_[j].unilateral || contact_digit(mode, j) < 3; };
-    const auto evaluate = [&] { return functions_(t, x.data(), mode, g_.data()) == 0; };
+    const auto evaluate = [&] {
+      if (functions_(t, x.data(), mode, g_.data()) != 0) return false;
+      for (std::size_t j = 0; j < contacts_.size(); ++j) {
+        const double force = std::abs(g_[contact_values * j + 3]);
+        if (is_closed(j) && std::isfinite(force)) force_size_[j] = std::max(force_size_[j], force);
+      }
+      return true;
+    };
     for (std::size_t j = 0; j < contacts_.size(); ++j) {  // contacts that an impact elsewhere has opened
       if (contacts_[j].unilateral && is_closed(j) && motion_.gap_rate(t, x, j) > motion_.negligible_speed())
         mode = with_contact_digit(mode, j, 3);
@@ -265,14 +284,21 @@ class Contacts {
       const bool back = contacts_[j].dimensions == 1 && g_[contact_values * j] < 0;
       mode = with_contact_digit(mode, j, high + (back ? 2 : 1));
     }
-    // One change may require another. Contacts that do not settle are left to the rule.
+    // One change may require another. If this leads to no admissible mode, all modes are tried.
+    const int touching = mode;
+    const std::vector<double> before(x.begin(), x.end());
     for (std::size_t round = 0; round < 4 * contacts_.size(); ++round) {
       if (!evaluate()) return mode;
       const int next = improved_mode(t, x, mode);
       if (next == mode) break;
       mode = next;
     }
-    return mode;
+    if (is_admissible(t, x, touching, mode)) return mode;
+    const std::vector<double> after(x.begin(), x.end());
+    std::copy(before.begin(), before.end(), x.begin());
+    const int found = searched_mode(t, x, touching, mode);
+    if (found == mode) std::copy(after.begin(), after.end(), x.begin());
+    return found;
   }
 
   int improved_mode(double t, std::span<double> x, int mode) {
@@ -292,40 +318,27 @@ class Contacts {
     return mode;
   }
 
-  void watch_contact(Mode& mode, std::size_t j, int digit) const {
-    const Contact& contact = contacts_[j];
-    const std::size_t first = contact_values * j;
-    const bool open = contact.unilateral && digit >= 3;
-    if (contact.sticks && !open) {
-      if (digit % 3 == 0) {
-        mode.watched.push_back({first + 1, Direction::down});
-        if (contact.dimensions == 1) mode.watched.push_back({first + 2, Direction::down});
-      } else {
-        mode.watched.push_back({first, digit % 3 == 1 ? Direction::down : Direction::up});
-      }
-    }
-    if (!open && contact.dimensions > 0) mode.watched.push_back({first + 4, Direction::down});
-    if (contact.surface || contact.unilateral) mode.watched.push_back({first + 3, Direction::down});
-    const char* state = open                                ? " is open"
-                        : contact.dimensions == 0           ? " is closed"
-                        : !contact.sticks || digit % 3 != 0 ? " slides"
-                        : contact.rolls                     ? " rolls"
-                                                            : " sticks";
-    mode.name += (mode.name.empty() ? "" : ", ") + contact.name + state;
+  /// Whether contact j, which touches without speed, has a normal force when it is closed. The force of one that has
+  /// just opened is 0 but for the error of the time at which it did.
+  bool is_pressed(double t, std::span<double> x, int mode, std::size_t j) {
+    constexpr double rounding = 1e-9;
+    std::vector<double> trial(x.begin(), x.end());  // sliding may begin in it
+    const double size = force_size_[j];
+    const int closed = consistent_mode(t, trial, with_contact_digit(mode, j, 0));
+    if (contact_digit(closed, j) >= 3) return false;
+    return functions_(t, trial.data(), closed, g_.data()) != 0 || g_[contact_values * j + 3] > rounding * size;
   }
 
-  void make_table() {
-    std::size_t modes = 1;
-    for (std::size_t j = 0; j < contacts_.size(); ++j) modes *= contact_states;
-    table_.resize(modes);
-    for (std::size_t m = 0; m < table_.size(); ++m) {
-      for (std::size_t j = 0; j < contacts_.size(); ++j)
-        watch_contact(table_[m], j, contact_digit(static_cast<int>(m), j));
-    }
-  }
+  /// Whether the closed contacts of `touching`, in the states of `mode`, obey their laws at (t, x).
+  bool is_admissible(double t, std::span<double> x, int touching, int mode);
+  /// The first admissible mode among all states of the contacts that `touching` leaves open; `mode` if there is none.
+  int searched_mode(double t, std::span<double> x, int touching, int mode);
+  std::vector<int> candidates(int touching, std::size_t j) const;
+  std::vector<double> later(double t, std::span<const double> x, int mode);
 
   std::vector<Contact> contacts_;
   std::vector<double> dx_, g_;
+  std::vector<double> force_size_;  // force_sizes()
   std::vector<Mode> table_;
   Hits hits_;
   std::vector<std::size_t> close_together_;
@@ -335,3 +348,5 @@ class Contacts {
 };
 
 }  // namespace eom
+
+#include "eom/modes/contact_search.hpp"  // the members that try modes
