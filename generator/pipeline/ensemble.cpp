@@ -166,6 +166,9 @@ class Runs {
     int taylor_order() const { return of.code_.taylor_order; }
     std::size_t taylor_states() const { return of.states_; }
     int events(double t, const double* x, double* values) const { return of.code_.events(t, x, p, u, 0, values); }
+    void begin_step(const eom::StepView&) const {
+      if (ranges != nullptr) ranges->begin_step();
+    }
     std::optional<std::pair<double, double>> hidden_crossing(const eom::StepView& step, std::size_t i, int side,
                                                              double from, double to) const {
       if (ranges == nullptr) return std::nullopt;

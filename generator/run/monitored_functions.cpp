@@ -2,6 +2,8 @@
 #include "run/monitored_functions.hpp"
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <set>
 #include <string>
 
@@ -59,6 +61,52 @@ std::vector<Ref> bumps(symbolic::Dag& dag, Ref r, Tails tails) {
     case symbolic::Op::power: return node.payload >= high_power ? std::vector{r} : std::vector<Ref>{};
     default: return {};
   }
+}
+
+using Terms = std::multiset<std::pair<bool, Ref>>;  // with their signs: whether they are added
+
+/// The terms of a sum.
+void collect_terms(const symbolic::Dag& dag, Ref r, bool added, Terms& result) {
+  const symbolic::Node& node = dag[r];
+  if (node.op == symbolic::Op::add || node.op == symbolic::Op::sub) {
+    collect_terms(dag, node.args[0], added, result);
+    collect_terms(dag, node.args[1], node.op == symbolic::Op::add ? added : !added, result);
+  } else if (node.op == symbolic::Op::neg) {
+    collect_terms(dag, node.args[0], !added, result);
+  } else if (dag.is_constant(r) && dag.value(r) == symbolic::Rational(-1)) {
+    result.emplace(!added, dag.one());
+  } else {
+    result.emplace(added, r);
+  }
+}
+
+/// The sums that a constraint which always acts sets to 1: norms of Euler parameters.
+std::set<Terms> unit_sums(const system::EquationSystem& s) {
+  const symbolic::Dag& dag = *s.dag;
+  std::set<Terms> result;
+  for (std::size_t k = 0; k < s.psi.size(); ++k) {
+    const bool may_open = std::any_of(s.contacts.begin(), s.contacts.end(),
+                                      [&](const system::Contact& contact) { return contact.unilateral == k; });
+    Terms terms;
+    if (!may_open && s.holonomic[k]) collect_terms(dag, s.psi[k], true, terms);
+    if (terms.erase({false, dag.one()}) == 1) result.insert(std::move(terms));
+  }
+  return result;
+}
+
+/// `root` with 1 in place of these sums. Bounds of quotients such as p0^2/(p0^2 + p1^2 + ..) are narrow then.
+Ref with_units(symbolic::Dag& dag, Ref root, const std::set<Terms>& sums) {
+  if (sums.empty()) return root;
+  std::map<Ref, Ref> made;
+  for (const Ref r : dag.reachable({root})) {
+    const symbolic::Node node = dag[r];
+    std::array<Ref, 4> operands = node.args;
+    for (std::size_t k = 0; k < node.arity; ++k) operands[k] = made.at(operands[k]);
+    Terms terms;
+    if (node.op == symbolic::Op::add) collect_terms(dag, r, true, terms);
+    made[r] = sums.contains(terms) ? dag.one() : node.arity == 0 ? r : symbolic::with_operands(dag, node, operands);
+  }
+  return made.at(root);
 }
 
 }  // namespace
@@ -132,9 +180,11 @@ std::vector<Table> narrow_functions(const system::EquationSystem& s, Tails tails
 
 std::vector<Table> bounded_events(const system::EquationSystem& s, const std::vector<std::optional<Ref>>& functions) {
   const SymbolResolver variables = run_variables(s);
+  const std::set<Terms> sums = unit_sums(s);
   std::vector<Table> result;
   for (const std::optional<Ref>& function : functions) {
-    std::optional<Table> table = function ? make_table(*s.dag, {*function}, variables) : std::nullopt;
+    std::optional<Table> table =
+        function ? make_table(*s.dag, {with_units(*s.dag, *function, sums)}, variables) : std::nullopt;
     result.push_back(table ? std::move(*table) : Table{});
   }
   if (std::all_of(result.begin(), result.end(), [](const Table& table) { return table.empty(); })) return {};

@@ -75,8 +75,13 @@ class ContactForces {
   /// The contacts.
   const Set& set() const { return set_; }
   /// The mode of each contact.
-  std::vector<ContactState>& states() { return states_; }
+  std::vector<ContactState>& states() {
+    ++changes_;
+    return states_;
+  }
   const std::vector<ContactState>& states() const { return states_; }
+  /// Differs after each access that may change modes.
+  std::size_t changes() const { return changes_; }
   /// The description of contact j.
   const Description& contact(std::size_t j) const { return set_.contacts[j]; }
   /// Whether contact j is not open.
@@ -378,6 +383,7 @@ class ContactForces {
   std::vector<const Row*> rows_;
   Vector free_, work_, response_;
   double least_slip_ = 0, largest_acceleration_ = 0;
+  std::size_t changes_ = 0;
   bool undetermined_ = false;
 };
 

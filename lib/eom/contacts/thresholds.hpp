@@ -46,10 +46,11 @@ class Thresholds {
   /// Restores the sizes.
   void restore(const Sizes& from) { sizes_ = from; }
 
-  /// The rows of the forces are evaluated at the state x.
-  void observe(const double* x) {
+  /// The rows of the forces are evaluated at the state x. Contacts with `skipped` are left out.
+  void observe(const double* x, const std::vector<bool>& skipped = {}) {
     const double* const rates = x + n_;
     for (std::size_t j = 0; j < sizes_.gap.size(); ++j) {
+      if (j < skipped.size() && skipped[j]) continue;
       const Description& at = forces_.contact(j);
       const auto observe_speed = [&](const Row& row) { grow(sizes_.speed, forces_.terms(row, rates)); };
       if (at.has_constraint()) {

@@ -55,6 +55,8 @@ class EventMonitor {
   struct Functions {
     One& one;
     int operator()(double t, const double* x, double* values) const { return one.events(t, x, values); }
+    void begin_step(const StepView& view) const requires requires { one.begin_step(view); }
+    { one.begin_step(view); }
     auto hidden_crossing(const StepView& view, std::size_t i, int side, double from,
                          double to) const requires requires {
       one.hidden_crossing(view, i, side, from, to);

@@ -32,6 +32,7 @@ namespace eom {
 enum class EventAction {
   resume,   // the state is unchanged: functions keep their sides, the step size is kept
   restart,  // the state, the right-hand side or the monitored functions changed: new sides and step size
+  collide,  // like restart, after an impact: others may follow at the same time, whose number the handler bounds
   stop,     // the run ends here: stopped_by_event
 };
 
@@ -99,7 +100,7 @@ class Run {
   /// To be called after each accepted step. Passing events are reported; a breaking one ends the piece.
   bool observe(const StepView& view) {
     if (values_.empty()) return observer_(view);
-    locator_.begin_step(view, g_);
+    locator_.begin_step(view, g_, view.t1 == t1_ && options_.events_at_end);
     if (turned_back_ && locator_.side(*turned_back_) != 0) {
       lost_ = locator_.side(*turned_back_) != locator_.from_side(*turned_back_);
       turned_back_.reset();
@@ -255,6 +256,7 @@ class Run {
     const EventAction answer = handler_(EventPoint{total_.t, total_.x, crossing, locator_.functions(), simultaneous});
     if (!continues) return end(Outcome::stopped_by_event, answer == EventAction::stop ? "" : "stopped by the observer");
     if (answer == EventAction::stop) return end(Outcome::stopped_by_event, "");
+    if (answer == EventAction::collide) events_without_progress_ = 0;
     if (events_without_progress_ >= events_without_progress) return end(Outcome::step_too_small, no_progress);
     piece.initial_step = answer == EventAction::resume ? std::abs(h) : options_.initial_step;
     if (answer == EventAction::resume) return true;

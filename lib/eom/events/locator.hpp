@@ -9,8 +9,9 @@
 // side, whatever the samples show. Each step is sampled at nine points. Between samples of one sign a double root is
 // searched for if they indicate a dip that may reach zero: three samples by the parabola through them, four by the
 // lines through the two outer samples on each side, which bound a convex function, with or without a kink, from below.
-// At each crossing all functions are evaluated. One that is beyond zero there has crossed before, however short the
-// interval and whatever the samples show. A zero without a change of sign is not an event.
+// g may also have a member is_clear(view, i, side): function i has this sign throughout the step, which is not sampled
+// if all functions are clear. At each crossing all functions are evaluated. One that is beyond zero there has crossed
+// before, however short the interval and whatever the samples show. A zero without a change of sign is not an event.
 #pragma once
 
 #include <algorithm>
@@ -65,6 +66,7 @@ class EventLocator {
         values_(functions_.size()),
         crossing_values_(functions_.size()),
         samples_(places.size() * functions_.size()),
+        is_clear_(functions_.size(), false),
         x_(n) {}
 
   std::span<EventFunction> functions() { return functions_; }
@@ -81,13 +83,17 @@ class EventLocator {
   int start(double t, const double* x, G& g, bool forward = true, std::span<const Crossing> crossed = {}) {
     forward_ = forward;
     if (functions_.empty()) return 0;
+    if constexpr (requires { g.forget_step(); }) g.forget_step();
     const int code = g(t, x, values_.data());
     if (code != 0) return code;
     std::fill(residual_.begin(), residual_.end(), 0.0);
     for (std::size_t i = 0; i < functions_.size(); ++i)
       side_[i] = exceeds_rounding(i, values_[i]) ? sign(values_[i]) : 0;
     for (const Crossing& c : crossed) {
-      const double near = std::max(4 * std::abs(c.value), crossed_rounding * size_[c.function]);
+      const double size = size_[c.function], off = std::abs(c.value);
+      const bool turned = c.value * values_[c.function] < 0;  // a jump beyond zero has led back
+      const double near =
+          std::max(turned ? std::min(4 * off, largest_residual * size) : 4 * off, crossed_rounding * size);
       if (!(std::abs(values_[c.function]) > near)) side_[c.function] = 0;
     }
     for (std::size_t i = 0; i < functions_.size(); ++i)
@@ -97,9 +103,20 @@ class EventLocator {
     return 0;
   }
 
-  /// Samples a new step. The results of next_crossing() refer to it until end_step().
+  /// Samples a new step. The results of next_crossing() refer to it until end_step(). is_last: crossing_at_end() will
+  /// be called, which needs samples of all functions.
   template <class G>
-  void begin_step(const StepView& view, G& g) {
+  void begin_step(const StepView& view, G& g, bool is_last = false) {
+    if constexpr (requires { g.begin_step(view); }) g.begin_step(view);
+    if constexpr (requires { g.is_clear(view, std::size_t{}, 1); }) {
+      if (is_last) g.forget_step();
+      all_clear_ = !is_last;
+      for (std::size_t i = 0; i < functions_.size(); ++i) {
+        is_clear_[i] = !is_last && functions_[i].watch != Watch::off && side_[i] != 0 && g.is_clear(view, i, side_[i]);
+        all_clear_ = all_clear_ && (is_clear_[i] || functions_[i].watch == Watch::off);
+      }
+      if (all_clear_) return;
+    }
     for (std::size_t k = 0; k < places.size(); ++k) {
       evaluate(view, places[k], g);
       for (std::size_t i = 0; i < functions_.size(); ++i) {
@@ -115,10 +132,10 @@ class EventLocator {
   /// The next monitored crossing of the step, in the order of the run; none if there are no more.
   template <class G>
   std::optional<Crossing> next_crossing(const StepView& view, G& g) {
-    while (true) {
+    while (!all_clear_) {
       std::optional<Candidate> first;
       for (std::size_t i = 0; i < functions_.size(); ++i) {
-        if (functions_[i].watch == Watch::off) continue;
+        if (functions_[i].watch == Watch::off || is_clear_[i]) continue;
         const std::optional<Candidate> candidate = crossing(view, i, g);
         if (candidate && (!first || candidate->s < first->s)) first = candidate;
       }
@@ -135,6 +152,7 @@ class EventLocator {
       const Direction direction = functions_[i].direction;
       if (direction == Direction::any || (direction == Direction::up) == up) return Crossing{i, at(view, first->s), up};
     }
+    return std::nullopt;
   }
 
   /// A crossing at the end of the step: a function that falls to zero there, or would within the time `near` behind it.
@@ -159,7 +177,7 @@ class EventLocator {
     std::vector<std::size_t> found;
     for (std::size_t i = 0; i < functions_.size(); ++i) {
       const EventFunction& f = functions_[i];
-      if (i == crossed || f.watch == Watch::off || f.guard || side_[i] == 0) continue;
+      if (i == crossed || is_clear_[i] || f.watch == Watch::off || f.guard || side_[i] == 0) continue;
       if (f.direction != Direction::any && side_[i] != inner_side(f, forward_)) continue;
       const double near = crossed_rounding * size_[i], here = side_[i] * values[i];
       if (here <= near && side_[i] * sample(0, i) > std::max(here, near)) found.push_back(i);
@@ -170,7 +188,8 @@ class EventLocator {
   /// To be called after the step was accepted in full: determines the sides of functions that had none, or had no value
   /// somewhere in the step.
   void end_step() {
-    for (std::size_t i = 0; i < functions_.size(); ++i) {
+    for (std::size_t i = 0; i < functions_.size() && !all_clear_; ++i) {
+      if (is_clear_[i]) continue;
       bool known = functions_[i].watch != Watch::off && side_[i] != 0;
       for (std::size_t k = 0; k < places.size(); ++k) known = known && std::isfinite(sample(k, i));
       const double last = sample(places.size() - 1, i);
@@ -179,9 +198,6 @@ class EventLocator {
   }
 
  private:
-  struct Point {
-    double s, value;
-  };
   struct Candidate {
     std::size_t function;
     double s;
@@ -193,6 +209,7 @@ class EventLocator {
   static constexpr double tolerance = 1e-12;         // of the step
   static constexpr double rounding = 1e-13;          // of the largest value so far: smaller values have no sign
   static constexpr double crossed_rounding = 1e-10;  // for a function that has just crossed: its root is not exact
+  static constexpr double largest_residual = 1e-3;   // of a root, of the same largest value
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
   static constexpr double least_slope = 0.6;  // at the end of a step, relative to the slope before
 
@@ -314,9 +331,9 @@ class EventLocator {
       if (!std::isfinite(here)) break;
       if (here < 0) return Candidate{i, root(inward, left, at_left, places[k], here), side};
       if (k + 1 < places.size()) {
-        const Point b{left, at_left}, c{places[k], here}, d{places[k + 1], side * sample(k + 1, i)};
+        const events::Point b{left, at_left}, c{places[k], here}, d{places[k + 1], side * sample(k + 1, i)};
         double dip = k > 1 && places[k - 2] >= position_[i]
-                         ? find_dip({places[k - 2], side * sample(k - 2, i)}, b, c, d, inward)
+                         ? events::find_dip_of_lines({places[k - 2], side * sample(k - 2, i)}, b, c, d, inward)
                          : none;
         if (!std::isfinite(dip)) dip = events::find_dip(inward, left, at_left, places[k], here, d.s, d.value);
         if (std::isfinite(dip)) return Candidate{i, root(inward, left, at_left, dip, inward(dip)), side};
@@ -336,8 +353,8 @@ class EventLocator {
     for (std::size_t i = 0; i < functions_.size(); ++i) {
       const int side = side_[i];
       const double there = side * crossing_values_[i];
-      if (i == found.function || functions_[i].watch == Watch::off || !(there < 0) || !exceeds_rounding(i, there) ||
-          position_[i] >= found.s)
+      if (i == found.function || is_clear_[i] || functions_[i].watch == Watch::off || !(there < 0) ||
+          !exceeds_rounding(i, there) || position_[i] >= found.s)
         continue;
       double left = position_[i], at_left = left == 0 ? side * sample(0, i) : none;
       for (std::size_t k = 1; k < places.size() && places[k] < found.s; ++k) {
@@ -348,22 +365,6 @@ class EventLocator {
       if (s < found.s && (!first || s < first->s)) first = Candidate{i, s, side};
     }
     return first;
-  }
-
-  /// A point between b and c at which the function is negative although the four samples are not; NaN if the lines
-  /// through the outer samples meet above zero, or if there is no such point.
-  template <class F>
-  double find_dip(Point a, Point b, Point c, Point d, F& inward) {
-    if (!(a.value > 0 && b.value > 0 && c.value > 0 && d.value > 0)) return none;
-    const double falls = (b.value - a.value) / (b.s - a.s), rises = (d.value - c.value) / (d.s - c.s);
-    if (!(falls < 0 && rises > 0)) return none;
-    const double s = (c.value - b.value + falls * b.s - rises * c.s) / (falls - rises);
-    if (!(s > b.s && s < c.s && b.value + falls * (s - b.s) < 0)) return none;
-    const Point m{s, inward(s)};
-    if (m.value < 0) return s;
-    if (m.value < b.value && m.value < c.value) return events::find_negative(inward, b.s, s, m.value, c.s, 1e-9);
-    if (b.value < c.value) return events::find_negative(inward, a.s, b.s, b.value, s, 1e-9);
-    return events::find_negative(inward, s, c.s, c.value, d.s, 1e-9);
   }
 
   /// The root between left (on the function's side, or its last crossing) and right (beyond it).
@@ -384,15 +385,15 @@ class EventLocator {
     return events::find_root(inward, left, at_left, right, at_right, tolerance);
   }
 
-  bool forward_ = true;
   std::vector<EventFunction> functions_;
   std::vector<int> side_;
-  std::vector<double> position_;  // fraction of the step up to which crossings are known
-  std::vector<double> size_;      // largest value so far
-  std::vector<double> residual_;  // value at the start, for a function that starts on its surface
-  std::vector<double> values_;
-  std::vector<double> crossing_values_;  // values at a crossing
+  std::vector<double> position_;                  // fraction of the step up to which crossings are known
+  std::vector<double> size_;                      // largest value so far
+  std::vector<double> residual_;                  // value at the start, for a function that starts on its surface
+  std::vector<double> values_, crossing_values_;  // the latter at a crossing
   std::vector<double> samples_;
+  std::vector<bool> is_clear_;               // in the step
+  bool forward_ = true, all_clear_ = false;  // all monitored functions are clear: there are no samples
   std::vector<double> x_;
 };
 

@@ -72,4 +72,25 @@ double find_dip(F& f, double a, double fa, double b, double fb, double c, double
   return find_negative(f, a, b, fb, c, 1e-9);
 }
 
+/// A value of a function at a point.
+struct Point {
+  double s, value;
+};
+
+/// A point between b and c at which the function is negative although the four samples are not; NaN if the lines
+/// through the outer samples meet above zero, or if there is no such point.
+template <class F>
+double find_dip_of_lines(Point a, Point b, Point c, Point d, F& inward) {
+  if (!(a.value > 0 && b.value > 0 && c.value > 0 && d.value > 0)) return std::numeric_limits<double>::quiet_NaN();
+  const double falls = (b.value - a.value) / (b.s - a.s), rises = (d.value - c.value) / (d.s - c.s);
+  if (!(falls < 0 && rises > 0)) return std::numeric_limits<double>::quiet_NaN();
+  const double s = (c.value - b.value + falls * b.s - rises * c.s) / (falls - rises);
+  if (!(s > b.s && s < c.s && b.value + falls * (s - b.s) < 0)) return std::numeric_limits<double>::quiet_NaN();
+  const Point m{s, inward(s)};
+  if (m.value < 0) return s;
+  if (m.value < b.value && m.value < c.value) return find_negative(inward, b.s, s, m.value, c.s, 1e-9);
+  if (b.value < c.value) return find_negative(inward, a.s, b.s, b.value, s, 1e-9);
+  return find_negative(inward, s, c.s, c.value, d.s, 1e-9);
+}
+
 }  // namespace eom::events

@@ -62,6 +62,15 @@ class Code {
 
   /// Number of expressions.
   std::size_t roots() const { return roots_.size(); }
+  /// The variables that occur, in ascending order.
+  std::vector<std::size_t> variables() const {
+    std::vector<std::size_t> result;
+    for (const Step& step : steps_)
+      if (step.op == Op::variable) result.push_back(place(step.a[0]));
+    std::sort(result.begin(), result.end());
+    result.erase(std::unique(result.begin(), result.end()), result.end());
+    return result;
+  }
   /// Kinks in order of evaluation. The surface of a kink is one operand, or two that are compared.
   std::size_t kinks() const { return kinks_.size(); }
   /// Whether the function itself jumps there (sign, if), not only its slope.
@@ -135,7 +144,7 @@ class Code {
       case Op::mul: return arg(0) * arg(1);
       case Op::div: return arg(0) / arg(1);
       case Op::neg: return -arg(0);
-      case Op::power: return std::pow(arg(0), static_cast<double>(step.a[1]));
+      case Op::power: return step.a[1] == 2 ? arg(0) * arg(0) : std::pow(arg(0), static_cast<double>(step.a[1]));
       case Op::pow: return std::pow(arg(0), arg(1));
       case Op::atan2: return std::atan2(arg(0), arg(1));
       case Op::abs: return side(i, arg(0)) < 0 ? -arg(0) : arg(0);

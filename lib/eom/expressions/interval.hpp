@@ -65,7 +65,9 @@ Interval map_monotonic(F f, Interval a) {
 }
 
 inline Interval integer_power(Interval a, int n) {
-  const double low = std::pow(a.low, n), high = std::pow(a.high, n);
+  if (n == 1) return a;
+  const auto power = [n](double x) { return n == 2 ? x * x : std::pow(x, n); };
+  const double low = power(a.low), high = power(a.high);
   if (n % 2 == 1 || a.low >= 0) return without_nan({low, high});
   if (a.high <= 0) return without_nan({high, low});
   return without_nan({0, std::max(low, high)});

@@ -59,7 +59,7 @@ void transfer(Archive& archive, std::optional<Value>& value) requires(!std::is_t
 // Structured bindings name every member: a new member of these types is an error here.
 template <class Archive>
 void transfer(Archive& archive, hybrid::ContactModes::State& state) {
-  auto& [mode, chatter, hits, slip, restitution, largest_gap] = state;
+  auto& [mode, chatter, hits, slip, restitution, largest_gap, force_sizes] = state;
   auto& [largest, least] = slip;
   transfer(archive, mode);
   transfer(archive, chatter);
@@ -68,6 +68,7 @@ void transfer(Archive& archive, hybrid::ContactModes::State& state) {
   transfer(archive, least);
   transfer(archive, restitution);
   transfer(archive, largest_gap);
+  transfer(archive, force_sizes);
 }
 template <class Archive>
 void transfer(Archive& archive, hybrid::SolvedContacts::State& state) {
@@ -101,8 +102,25 @@ void transfer(Archive& archive, MethodChoice& choice) {
   changes.clear();
 }
 template <class Archive>
+void transfer(Archive& archive, hybrid::Clearance::Function& function) {
+  auto& [variables, box, side, margin] = function;
+  transfer(archive, variables);
+  transfer(archive, box);
+  transfer(archive, side);
+  transfer(archive, margin);
+}
+template <class Archive>
+void transfer(Archive& archive, hybrid::Clearance::State& state) {
+  auto& [parameters, functions, last, begun, is_extended] = state;
+  transfer(archive, parameters);
+  transfer(archive, functions);
+  transfer(archive, last);
+  transfer(archive, begun);
+  transfer(archive, is_extended);
+}
+template <class Archive>
 void transfer(Archive& archive, hybrid::Integration::State& state) {
-  auto& [contacts, solved_contacts, charts, largest_kinks, constants, choice, taken, sliding] = state;
+  auto& [contacts, solved_contacts, charts, largest_kinks, constants, choice, taken, sliding, clearance] = state;
   transfer(archive, contacts);
   transfer(archive, solved_contacts);
   transfer(archive, charts);
@@ -111,6 +129,7 @@ void transfer(Archive& archive, hybrid::Integration::State& state) {
   transfer(archive, choice);
   transfer(archive, taken);
   transfer(archive, sliding);
+  transfer(archive, clearance);
 }
 template <class Archive>
 void transfer(Archive& archive, hybrid::ExternalSteps::State& state) {

@@ -31,7 +31,7 @@ inline EventAction Integration::change_solved_contact(const EventPoint& point, c
     for (const SolvedContacts::Change& change : context_.solved_contacts->changes())
       event({point.t, change.kind, change.name, change.work, change.impulses}, point.x);
   }
-  if (answer == EventAction::restart) context_.freeze_branches(point.t, point.x.data(), true);
+  if (answer != EventAction::stop) context_.freeze_branches(point.t, point.x.data(), true);
   return answer;
 }
 

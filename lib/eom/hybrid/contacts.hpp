@@ -137,12 +137,17 @@ struct ContactModes::State {
   ContactVelocities::ObservedSlip slip = {};
   std::vector<double> restitution = {};
   double largest_gap = 0;
+  std::vector<double> force_sizes = {};
 };
 
 inline ContactModes::State ContactModes::save() const {
-  return {mode(),       switch_ ? switch_->chatter() : modes::ChatterDetector{},
-          rule_.hits(), velocities_.observed_slip(),
-          restitution_, largest_gap_};
+  return {mode(),
+          switch_ ? switch_->chatter() : modes::ChatterDetector{},
+          rule_.hits(),
+          velocities_.observed_slip(),
+          restitution_,
+          largest_gap_,
+          rule_.force_sizes()};
 }
 
 inline void ContactModes::restore(const State& from) {
@@ -151,6 +156,7 @@ inline void ContactModes::restore(const State& from) {
   for (std::size_t j = 0; j < restitution_.size(); ++j) rule_.set_restitution(j, restitution_[j]);
   rule_.set_hits(from.hits);
   largest_gap_ = from.largest_gap;
+  rule_.set_force_sizes(from.force_sizes);
   rows_.set_mode(from.mode);
   switch_.emplace(rule_.table(), rule_, from.mode);
   switch_->set_chatter(from.chatter);

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "eom/hybrid/clearance.hpp"
 #include "eom/hybrid/contacts.hpp"
 #include "eom/hybrid/event_ranges.hpp"
 #include "eom/hybrid/jumps.hpp"
@@ -24,7 +25,12 @@ class EventFunctions {
  public:
   /// contacts: null if there are none.
   EventFunctions(const Problem& problem, Model& model, const std::unique_ptr<ContactModes>& contacts)
-      : problem_(problem), model_(model), contacts_(contacts), ranges_(problem), jumps_(problem) {}
+      : problem_(problem),
+        model_(model),
+        contacts_(contacts),
+        ranges_(problem),
+        jumps_(problem),
+        clearance_(ranges_, size(), problem.n()) {}
 
   std::size_t first_kink() const { return problem_.events.size(); }
   std::size_t first_contact() const { return first_kink() + problem_.code->kinks.size(); }
@@ -72,26 +78,60 @@ class EventFunctions {
   /// The interval of a step in which function i first leaves its side although no sample shows it.
   std::optional<std::pair<double, double>> hidden_crossing(const StepView& step, std::size_t i, int side, double from,
                                                            double to, const Sampling& sampling) const {
-    if (model_.mode().charts() != 0) return std::nullopt;
-    if (i >= first_solved_contact() && i < first_jump()) {
-      const std::size_t j = (i - first_solved_contact()) / SolvedContacts::values_per_contact;
-      if (!solved_contacts_->is_open(j)) return std::nullopt;
-    } else if (i >= first_contact()) {
-      const std::size_t j = (i - first_contact()) / contact_values;
-      const bool open = j < problem_.code->contacts.size() && problem_.code->contacts[j].unilateral &&
-                        contact_digit(model_.contact_mode(), j) >= 3;
-      if (!open) return std::nullopt;
-    }
+    if (!is_available(i)) return std::nullopt;
     return ranges_.first(step, i, side, from, to, sampling);
   }
 
+  /// To be called at each new step, before is_clear() and hidden_crossing().
+  void begin_step(const StepView& step) {
+    if (clearance_.is_extended()) observe(step.t0, step.x0.data());
+    ranges_.begin_step();
+    clearance_.begin_step(step);
+  }
+  /// Whether function i has the sign `side` throughout the step.
+  bool is_clear(std::size_t i, int side) {
+    const bool clear = is_available(i) && clearance_.is_clear(i, side);
+    if (i >= first_solved_contact() && i < first_jump() &&
+        (i - first_solved_contact()) % SolvedContacts::values_per_contact == 0)
+      solved_contacts_->set_clear((i - first_solved_contact()) / SolvedContacts::values_per_contact, clear);
+    return clear;
+  }
+  /// To be called at the start of a run.
+  void start() { clearance_.start(); }
+  Clearance::State save() const { return clearance_.save(problem_.parameters); }
+  void restore(const Clearance::State& from) { clearance_.restore(from, problem_.parameters); }
+  /// All functions are evaluated again: the state may have changed.
+  void forget_step() {
+    if (solved_contacts_ != nullptr) solved_contacts_->forget_clear();
+  }
+
  private:
+  /// Whether function i is available as an expression, in the present modes.
+  bool is_available(std::size_t i) const {
+    if (model_.mode().charts() != 0) return false;
+    if (i >= first_solved_contact() && i < first_jump())
+      return solved_contacts_->is_open((i - first_solved_contact()) / SolvedContacts::values_per_contact);
+    if (i < first_contact()) return true;
+    const std::size_t j = (i - first_contact()) / contact_values;
+    return j < problem_.code->contacts.size() && problem_.code->contacts[j].unilateral &&
+           contact_digit(model_.contact_mode(), j) >= 3;
+  }
+  /// Contacts observe the sizes of their gaps and speeds, from which roundings follow.
+  void observe(double t, const double* x) {
+    if (!contacts_ && solved_contacts_ == nullptr) return;
+    forget_step();
+    observed_.resize(size());
+    (*this)(t, x, observed_.data());
+  }
+
   const Problem& problem_;
   Model& model_;
   const std::unique_ptr<ContactModes>& contacts_;
   SolvedContacts* solved_contacts_ = nullptr;
   EventRanges ranges_;
   Jumps jumps_;
+  Clearance clearance_;
+  std::vector<double> observed_;
 };
 
 }  // namespace eom::hybrid

@@ -4,6 +4,7 @@
 // which a function has crossed zero, unless its bounds exclude a crossing.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -11,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "eom/hybrid/variables.hpp"
+#include "eom/hybrid/step_path.hpp"
 
 namespace eom::hybrid {
 
@@ -24,7 +25,14 @@ class EventRanges {
       : variables_(std::move(variables)) {
     for (const expressions::Table& function : functions)
       codes_.push_back(function.empty() ? expressions::Code() : expressions::Code(function, parameters));
+    std::size_t used = 1;  // variables: inputs, which may be forces of many contacts, are the last ones
+    for (const expressions::Code& code : codes_)
+      if (const std::vector<std::size_t> own = code.variables(); !own.empty()) used = std::max(used, own.back() + 1);
+    variables_.limit(used);
   }
+
+  /// To be called at each new step, before first().
+  void begin_step() const { path_.begin_step(); }
 
   /// The interval of the step (from 0 to 1) in which function i first leaves its side.
   std::optional<std::pair<double, double>> first(const StepView& step, std::size_t i, int side, double from, double to,
@@ -32,26 +40,23 @@ class EventRanges {
     using expressions::Interval;
     if (i >= codes_.size() || codes_[i].roots() == 0 || !(to > from)) return std::nullopt;
     const expressions::Code& code = codes_[i];
-    const auto inward = [&](const StepPlace& place) { return side * code.value(place.variables); };
-    std::vector<std::pair<StepPlace, StepPlace>> open(1);
-    open[0].first.s = from, open[0].second.s = to;
-    variables_.at(step, sampling, open[0].first);
-    variables_.at(step, sampling, open[0].second);
+    const auto place = [&](double s) -> const StepPlace& { return path_.place(variables_, step, sampling, s); };
+    const auto inward = [&](double s) { return side * code.value(place(s).variables); };
+    std::vector<std::pair<double, double>> open{{from, to}};
     for (std::size_t boxes = 0; !open.empty() && boxes < most_boxes; ++boxes) {
-      const auto [a, b] = std::move(open.back());
+      const auto [a, b] = open.back();
       open.pop_back();
-      StepPlace m{(a.s + b.s) / 2, {}};
-      variables_.at(step, sampling, m);
-      expressions::SlopedInterval g = code.range(variables_.box(a, m, b));
-      const double middle = code.value(m.variables);
+      const double m = (a + b) / 2;
+      expressions::SlopedInterval g = code.range(path_.box(variables_, step, sampling, a, m, b));
+      const double middle = code.value(place(m).variables);
       if (std::isfinite(g.slope.width()))
         g.value = intersection(g.value, Interval{middle, middle} + g.slope * Interval{-0.5, 0.5});
       if (side < 0) g = {-g.value, -g.slope};
       if (g.value.low > 0) continue;
-      const bool start = a.s == from, rises = g.slope.low > 0;
+      const bool start = a == from, rises = g.slope.low > 0;
       if (start && rises) continue;  // inward from a crossing or from the surface
-      if (b.s - a.s < shortest || g.slope.high < 0 || rises) {
-        if (inward(b) < 0 && !(start && b.s - a.s < shortest)) return std::pair{a.s, b.s};
+      if (b - a < shortest || g.slope.high < 0 || rises) {
+        if (inward(b) < 0 && !(start && b - a < shortest)) return std::pair{a, b};
         continue;
       }
       open.emplace_back(m, b);
@@ -60,12 +65,16 @@ class EventRanges {
     return std::nullopt;
   }
 
+  /// The function i; it has no roots if it is not available as an expression.
+  const expressions::Code* code(std::size_t i) const { return i < codes_.size() ? &codes_[i] : nullptr; }
+
  private:
   static constexpr std::size_t most_boxes = 300;  // per function and step
   static constexpr double shortest = 1e-7;        // of the step
 
   StepVariables variables_;
   std::vector<expressions::Code> codes_;
+  mutable StepPath path_;  // of the step: its functions have most points in common
 };
 
 }  // namespace eom::hybrid

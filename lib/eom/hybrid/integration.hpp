@@ -55,6 +55,7 @@ class Integration {
     MethodChoice choice = {};
     std::vector<std::int64_t> samples_taken = {};
     std::vector<std::size_t> sliding = {};  // kinks along whose surfaces the state slides
+    Clearance::State clearance = {};
   };
   /// The present modes.
   State save() const;
@@ -143,6 +144,7 @@ inline Integration::Integration(const Problem& problem)
 inline Result Integration::run(const Options& options, const Observer& observer, const OnEvent& event) {
   context_.projection.reset();
   context_.kinks.start();
+  context_.events.start();
   resets_.start();
   choice_ = {};
   missed_narrow_force_.reset();

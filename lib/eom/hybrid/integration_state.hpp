@@ -16,7 +16,8 @@ inline Integration::State Integration::save() const {
               context_.rows.integral_constants(),
               choice_,
               resets_.taken(),
-              context_.model.sliding_kinks()};
+              context_.model.sliding_kinks(),
+              context_.events.save()};
   if (context_.solved_contacts) state.solved_contacts = context_.solved_contacts->save();
   if (context_.contacts) state.contacts = context_.contacts->save();
   return state;
@@ -37,6 +38,7 @@ inline void Integration::restore(double t, const std::vector<double>& x, const S
   }
   if (from.solved_contacts) context_.solved_contacts->restore(*from.solved_contacts);
   context_.freeze_branches(t, x.data(), true);
+  context_.events.restore(from.clearance);
   choice_ = from.choice;
   if (!from.samples_taken.empty()) resets_.set_taken(from.samples_taken);
 }

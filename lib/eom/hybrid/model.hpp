@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "eom/hybrid/inputs.hpp"
 #include "eom/hybrid/problem.hpp"
 #include "eom/hybrid/sliding_surfaces.hpp"
+#include "eom/modes/contact_table.hpp"
 #include "eom/modes/mode_array.hpp"
 #include "eom/with_jacobian.hpp"
 
@@ -161,18 +163,20 @@ class Model {
   }
   /// Solves for the forces of contacts at a state. They are then among inputs(t).
   int solve_contacts(double t, const double* x) const {
-    if (!forces_ || (t == solved_t_ && std::equal(solved_x_.begin(), solved_x_.end(), x))) return 0;
+    if (!forces_ || (flight_ && *flight_ == forces_->changes())) return 0;
+    if (t == solved_t_ && std::equal(solved_x_.begin(), solved_x_.end(), x)) return 0;
     forget_contact_forces();
     std::fill(u_.begin() + static_cast<std::ptrdiff_t>(scene_inputs_), u_.end(), 0.0);
     inputs(t);
     const int code = forces_->solve(t, x, u_.data());
     if (code != 0) return code;
+    if (forces_->all_open()) flight_ = forces_->changes();
     solved_t_ = t;
     solved_x_.assign(x, x + code_->layout().size());
     return 0;
   }
   /// The forces of contacts are solved for again at the next evaluation.
-  void forget_contact_forces() const { solved_t_ = std::numeric_limits<double>::quiet_NaN(); }
+  void forget_contact_forces() const { solved_t_ = std::numeric_limits<double>::quiet_NaN(), flight_.reset(); }
   /// The parameters of the problem.
   const double* parameters() const { return problem_.parameters.data(); }
 
@@ -307,14 +311,12 @@ class Model {
     int operator()(const ModeArray& mode, const double* x, double t, double* values) const {
       const Code& code = *of->code_;
       const std::size_t first = of->problem_.events.size(), count = code.kinks.size();
-      of->g_.resize(first + count + values_per_contact * code.contacts.size());
+      of->g_.resize(first + count + contact_values * code.contacts.size());
       const int result = code.events(t, x, of->parameters(), of->inputs(t), mode.data(), of->g_.data());
       std::copy_n(of->g_.begin() + static_cast<std::ptrdiff_t>(first), count, values);
       return result;
     }
   };
-  static constexpr std::size_t values_per_contact = 5;
-
   // Both are valid until the next call.
   const int* mode_without_branches() {
     other_ = mode_;
@@ -390,6 +392,7 @@ class Model {
   std::unique_ptr<contacts::ContactForces> forces_;
   mutable double solved_t_ = std::numeric_limits<double>::quiet_NaN();  // the state for which u_ has contact forces
   mutable std::vector<double> solved_x_;
+  mutable std::optional<std::size_t> flight_;  // ContactForces::changes() since which all contacts are open
   mutable SlidingSurfaces<Branches, Surfaces> sliding_;
 };
 

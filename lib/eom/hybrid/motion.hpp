@@ -46,6 +46,9 @@ struct BoundedEvents {
                                                            double to) const {
     return of.events.hidden_crossing(step, i, side, from, to, sampling);
   }
+  void begin_step(const StepView& step) const { of.events.begin_step(step); }
+  bool is_clear(const StepView&, std::size_t i, int side) const { return of.events.is_clear(i, side); }
+  void forget_step() const { of.events.forget_step(); }
 };
 
 }  // namespace eom::hybrid

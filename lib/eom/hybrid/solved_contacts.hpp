@@ -41,7 +41,8 @@ class SolvedContacts {
         changed_(std::move(changed)),
         energy_(std::move(energy)),
         thresholds_(forces_, problem.n(), problem.rtol, problem.atol),
-        hits_(size()) {
+        hits_(size()),
+        is_clear_(size(), false) {
     transitions_.set_input_count(problem.inputs.size());
   }
 
@@ -119,16 +120,21 @@ class SolvedContacts {
     }
   }
 
+  /// Whether the gap of an open contact is known to stay positive. Its functions then have the value 1.
+  void set_clear(std::size_t j, bool clear) { is_clear_[j] = clear; }
+  void forget_clear() { is_clear_.assign(size(), false); }
+
   /// Values of all functions at a state.
   int operator()(double t, const double* x, double* g) {
     if (const int code = model_.solve_contacts(t, x); code != 0) return code;
     if (forces_.all_open()) {
       if (const int code = forces_.evaluate_rows(t, x, model_.inputs(t)); code != 0) return code;
     }
-    thresholds_.observe(x);
+    thresholds_.observe(x, is_clear_);
     for (std::size_t j = 0; j < size(); ++j) {
       double* const value = g + values_per_contact * j;
       value[0] = value[1] = value[2] = 1;
+      if (is_clear_[j]) continue;
       const contacts::Description& at = forces_.contact(j);
       if (!forces_.is_closed(j)) {
         const double rounding = thresholds_.gap_rounding(j, x);
@@ -149,9 +155,10 @@ class SolvedContacts {
 
   /// Called at the start of each step.
   void update(const double* x) {
+    if (forces_.all_open()) return;
     forces_.set_least_slip(thresholds_.least_slip(x));
     for (std::size_t j = 0; j < size(); ++j)
-      if (forces_.states()[j].starts && forces_.slip_speed(j) > 2 * forces_.least_slip())
+      if (std::as_const(forces_).states()[j].starts && forces_.slip_speed(j) > 2 * forces_.least_slip())
         forces_.states()[j].starts = false;
   }
 
@@ -182,6 +189,7 @@ class SolvedContacts {
     const bool meets = which == 0 && !forces_.is_closed(j);
     if (meets) {
       add_touching(t, x, touching);
+      forces_.set_least_slip(thresholds_.least_slip(x.data()));
       if (chatter_.add_transition(t)) end_bounces(j, touching, plastic);
       rest = stop_low_bounces(t, x, touching, plastic);
     }
@@ -192,7 +200,7 @@ class SolvedContacts {
       return EventAction::stop;
     }
     watch(functions);
-    return EventAction::restart;
+    return meets ? EventAction::collide : EventAction::restart;
   }
 
   /// Rows of closed contacts: gaps; and velocities: of sticking ones.
@@ -210,6 +218,7 @@ class SolvedContacts {
   /// velocity. Returns a code.
   template <class Gap, class Slip>
   int rows(double t, const double* x, Gap&& gap, Slip&& slip) {
+    if (forces_.all_open()) return 0;
     if (const int code = forces_.evaluate_rows(t, x, model_.inputs(t)); code != 0) return code;
     const double* const rates = x + problem_.n();
     const auto rest = [&](const contacts::Row& row) {
@@ -295,6 +304,7 @@ class SolvedContacts {
   Energy energy_;
   contacts::Thresholds thresholds_;
   std::vector<std::size_t> hits_;  // number of impacts
+  std::vector<bool> is_clear_;     // set_clear()
   modes::ChatterDetector chatter_;
   std::vector<Change> changes_;  // of the last event
   std::optional<Outcome> end_;

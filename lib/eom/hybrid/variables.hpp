@@ -25,6 +25,12 @@ class StepVariables {
   /// states: components without the work that a run integrates.
   StepVariables(std::size_t states, std::size_t inputs) : states_(states), inputs_(inputs) {}
 
+  /// Leaves out all variables but the first `count`.
+  void limit(std::size_t count) {
+    inputs_ = count > 1 + states_ ? std::min(inputs_, count - 1 - states_) : 0;
+    states_ = std::min(states_, count - 1);
+  }
+
   void at(const StepView& step, const Sampling& sampling, StepPlace& place) const {
     const double t = place.s >= 1 ? step.t1 : step.t0 + place.s * (step.t1 - step.t0);
     x_.resize(step.x0.size());
