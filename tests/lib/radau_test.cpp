@@ -67,7 +67,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("radau: orders 5, 9 and 13 in both directions of time, dense output of orders 3, 5 and 7") {
+TEST_CASE("radau: orders 5, 9 and 13 in both directions of time, dense output of orders 4, 5 and 7") {
   const problems::Oscillator f;
   for (const int order : {5, 9, 13})
     for (const double end : {6.0, -6.0}) {
@@ -94,7 +94,8 @@ TEST_CASE("radau: orders 5, 9 and 13 in both directions of time, dense output of
       const double h = order == 5 ? 0.1 : order == 9 ? 0.75 : 3;
       const double coarse = error(h), dense_coarse = inside, fine = error(h / 2), dense_fine = inside;
       CHECK(std::abs(std::log2(coarse / fine) - order) < 0.4);
-      CHECK(std::log2(dense_coarse / dense_fine) > (order + 1) / 2 + 0.5);  // plus one within a step
+      const int dense_order = order == 5 ? 4 : (order + 1) / 2;
+      CHECK(std::log2(dense_coarse / dense_fine) > dense_order + 0.5);  // plus one within a step
     }
   Options options;
   options.series_order = 7;

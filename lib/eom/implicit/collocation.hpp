@@ -117,10 +117,7 @@ class Collocation : public Base, public CollocationHooks {
   }
 
   /// Number of stages of the next step.
-  std::size_t stages() const {
-    if constexpr (most == 3) return 3;
-    return stages_;
-  }
+  std::size_t stages() const { return most == 3 ? 3 : stages_; }
 
  protected:
   static constexpr double safety = 0.9, most_growth = 8, most_shrinking = 5;
@@ -208,6 +205,17 @@ class Collocation : public Base, public CollocationHooks {
     return sum + s * moved;
   }
 
+  /// Dense output of order 4 of a step of three stages.
+  void interpolate_three_stages(double t, double* x) const {
+    const double s = (t - t0_) / h_;
+    RadauTableau::Row weight;
+    stage_weights<3>(*made_with_, s, weight);
+    const auto towards_slope = [&](std::size_t i) {
+      return i < m_ ? made_with_->gamma * estimate_[i] : h_ * f0_[i] + defect(i);
+    };
+    for (std::size_t i = 0; i < n_; ++i) x[i] = x0_[i] + (polynomial(weight, s, i) + bump(s) * towards_slope(i));
+  }
+
   /// Extrapolates the polynomial of the previous step. Zero if there is none, and for algebraic unknowns.
   void start_values() {
     RadauTableau::Row weight;
@@ -245,8 +253,8 @@ class Collocation : public Base, public CollocationHooks {
       if (const int code = evaluate(t, scratch_, f); code != 0) return code;
       if (const int code = method().add_algebraic(t, scratch_, z + n_, f); code != 0) return code;
     }
-    const bool finite = std::all_of(f_, f_ + stages() * length_, [](double value) { return std::isfinite(value); });
-    return finite ? 0 : code_not_finite;
+    const auto is_finite = [](double value) { return std::isfinite(value); };
+    return std::all_of(f_, f_ + stages() * length_, is_finite) ? 0 : code_not_finite;
   }
 
   /// Makes one simplified Newton iteration from stage derivatives in f_. Returns the size of the correction.
@@ -356,7 +364,7 @@ class Collocation : public Base, public CollocationHooks {
   /// Minus h times the slope of the collocation polynomial at the start.
   double defect(std::size_t i) const {
     double sum = 0;
-    each_stage<most>(*tableau_, [&](std::size_t k) { sum += tableau_->slope[k] * z_[k * length_ + i]; });
+    each_stage<most>(*made_with_, [&](std::size_t k) { sum += made_with_->slope[k] * z_[k * length_ + i]; });
     return sum;
   }
 

@@ -26,6 +26,9 @@ void stage_weights(const RadauTableau& tableau, double s, RadauTableau::Row& wei
   });
 }
 
+/// The quartic with value 0 at 0 and 1, slope 1 at 0 and slope 0 at the three stages of order 5.
+inline constexpr double bump(double s) { return s * (1 + s * (-4.5 + s * (6 - 2.5 * s))); }
+
 /// Hooks of methods with algebraic equations or a variable number of stages. A Method overrides those that it needs.
 struct CollocationHooks {
   int linearise() { return 0; }  // at the start of a step, with df/dx; returns a code

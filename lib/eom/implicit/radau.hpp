@@ -4,7 +4,8 @@
 // Mathematics 111 (1999). The order increases if Newton's iteration converges fast (contraction below 0.002) in steps
 // of steady length. It decreases if the iteration converges slowly (above 0.8) or not at all. It does not change within
 // ten steps of the last change. The first order is 5. Options::series_order fixes it; with fixed steps the default is
-// 5. Dense output: the collocation polynomial, of order s.
+// 5. Dense output: that of
+// radau5 for three stages, else the collocation polynomial, of order s.
 #pragma once
 
 #include <cstddef>
@@ -19,8 +20,7 @@ namespace eom::implicit {
 class Radau : public Collocation<Radau, RadauTableau::most> {
  public:
   static constexpr const char* name = "radau";
-  static constexpr int order = 5;        // at least
-  static constexpr int dense_order = 3;  // at least
+  static constexpr int order = 5, dense_order = 4;  // at least
   static constexpr Needs needs{.used = {Feature::jacobian}};
 
   Radau(System& system, std::span<const double> x, const Options& options)
@@ -56,6 +56,7 @@ class Radau : public Collocation<Radau, RadauTableau::most> {
 
   using Collocation::interpolate;
   void interpolate(double t, double* x) const {
+    if (made_with_->stages == 3) return interpolate_three_stages(t, x);
     const double s = (t - t0_) / h_;
     RadauTableau::Row weight;
     stage_weights<RadauTableau::most>(*made_with_, s, weight);

@@ -11,9 +11,6 @@
 
 namespace eom::implicit {
 
-/// The quartic with value 0 at 0 and 1, slope 1 at 0 and slope 0 at the three stages.
-inline constexpr double bump(double s) { return s * (1 + s * (-4.5 + s * (6 - 2.5 * s))); }
-
 /// The method `radau5`.
 class Radau5 : public Collocation<Radau5, 3> {
  public:
@@ -25,15 +22,7 @@ class Radau5 : public Collocation<Radau5, 3> {
   Radau5(System& system, std::span<const double> x, const Options& options) : Collocation(system, x, options, 3) {}
 
   using Collocation::interpolate;
-  void interpolate(double t, double* x) const {
-    const double s = (t - t0_) / h_;
-    RadauTableau::Row weight;
-    stage_weights<3>(*tableau_, s, weight);
-    for (std::size_t i = 0; i < n_; ++i) {
-      const double towards_slope = i < m_ ? tableau_->gamma * estimate_[i] : h_ * f0_[i] + defect(i);
-      x[i] = x0_[i] + (polynomial(weight, s, i) + bump(s) * towards_slope);
-    }
-  }
+  void interpolate(double t, double* x) const { interpolate_three_stages(t, x); }
 };
 
 }  // namespace eom::implicit
