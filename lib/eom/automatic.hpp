@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The method `auto`: dopri5 for rtol above 1e-4, else dop853. It changes to radau5 if the motion becomes stiff, and
-// back when it is no longer stiff. Options::choice records the changes and their reasons.
+// The method `auto`: dopri5 for rtol above 1e-4, else dop853. While the motion is stiff it is radau5 for rtol above
+// 1e-5, else radau. Options::choice records the changes and their reasons.
 //
 // Explicit methods: after each step |h lambda| is estimated from the last stage and the end, both at t1 (Hairer,
 // Wanner, Solving Ordinary Differential Equations II, section IV.2), and averaged. The motion counts as stiff after 15
@@ -8,15 +8,21 @@
 // along decay; that of dopri5 is 3.3 along decay but 1.0 along vibrations, so 50 steps in a row near it lead to dop853
 // first. At tight tolerances rounding keeps the fast part of a stiff motion alive and steps stay below the limit.
 // Therefore 50 steps of dop853 in a row with three times the |h lambda| of a motion that is itself that fast also count
-// as stiff. radau5: h rho(df/dx) by power iteration; 15 steps in a row below half of that value lead back. If this
-// happens early, the next change requires twice as many stiff steps. With fixed steps the method does not change.
+// as stiff. Implicit methods: h rho(df/dx) by power iteration; 15 steps in a row below half of that value lead back.
 //
-// The first steps of radau5 are a trial. Its cost per unit of time, in evaluations of the right-hand side, is compared
-// with that of the explicit method in the steps that led to the change. If it is 1.5 times as high, the explicit method
-// continues, and the next trial requires eight times as many stiff steps. Operations are counted, never clocks, so that
-// every process makes the same choice.
+// A change that is soon undone did not pay. If the implicit steps replaced fewer than 60 explicit ones at their limit
+// of stability, the next change to the implicit method requires twice as many stiff steps; likewise the next change
+// back after fewer than 60 steps of the explicit method before the motion was stiff. These counts are part of
+// Options::choice, since each event begins a new run. With fixed steps the method does not change.
+//
+// The first ten steps of an implicit method are a trial, up to thirty of radau, whose order may rise. Its cost per unit
+// of time, in evaluations of the right-hand side (implicit/work.hpp), is compared with that of the explicit method in
+// the steps that led to the change. If it is 1.5 times as high, the explicit method continues, and the next trial
+// requires eight times as many stiff steps. Operations are counted, never clocks, so that every process makes the same
+// choice.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -26,13 +32,15 @@
 #include "eom/explicit_rk/dop853.hpp"
 #include "eom/explicit_rk/dopri5.hpp"
 #include "eom/explicit_rk/method.hpp"
+#include "eom/implicit/radau.hpp"
 #include "eom/implicit/radau5.hpp"
+#include "eom/implicit/work.hpp"
 
 namespace eom {
 
-/// The method `auto`: dopri5 or dop853, and radau5 as long as the motion is stiff.
+/// The method `auto`: dopri5 or dop853, and radau5 or radau as long as the motion is stiff.
 class Automatic {
-  enum class Active { dopri5, dop853, radau5 };
+  enum class Active { dopri5, dop853, radau5, radau };
   using Dopri5 = explicit_rk::Method<explicit_rk::Dopri5, System>;
   using Dop853 = explicit_rk::Method<explicit_rk::Dop853, System>;
 
@@ -41,6 +49,7 @@ class Automatic {
     switch (active_) {
       case Active::dopri5: return act(*dopri5_);
       case Active::dop853: return act(*dop853_);
+      case Active::radau: return act(*radau_);
       default: return act(*radau5_);
     }
   }
@@ -51,6 +60,8 @@ class Automatic {
   static constexpr int order = 5;  // at least
   /// dopri5 above this value of rtol. At equal true errors below 1e-3 dop853 takes less time, with few exceptions.
   static constexpr double rtol_of_dopri5 = 1e-4;
+  /// radau5 above this value of rtol, else radau, whose order rises with the accuracy.
+  static constexpr double rtol_of_radau5 = 1e-5;
   static constexpr int dense_order = 4;
 
   Automatic(System& system, std::span<const double> x, const Options& options)
@@ -60,6 +71,7 @@ class Automatic {
         direction_(x.size()) {
     if (choice_.method == nullptr) choice_.method = explicit_name();
     active_ = choice_.method == std::string_view(implicit::Radau5::name)      ? Active::radau5
+              : choice_.method == std::string_view(implicit::Radau::name)     ? Active::radau
               : choice_.method == std::string_view(explicit_rk::Dopri5::name) ? Active::dopri5
                                                                               : Active::dop853;
     make(x);
@@ -94,6 +106,7 @@ class Automatic {
   int starting_order() const { return active_ == Active::dop853 ? explicit_rk::Dop853::order : order; }
 
   int attempt(double t0, double t1) {
+    if (steps_ == 0) window_.t = stiff_from_.t = now_.t = t0;
     t1_ = t1;
     return with_active([&](auto& m) { return m.attempt(t0, t1); });
   }
@@ -108,9 +121,11 @@ class Automatic {
   }
 
   double after_accepted(double h, double error) {
+    add_work();
     const double next = with_active([&](auto& m) { return m.after_accepted(h, error); });
     h_ = h;
-    active_ == Active::radau5 ? detect_end_of_stiffness() : detect_stiffness();
+    ++steps_;
+    is_implicit() ? judge_implicit_method() : detect_stiffness();
     return next_.has_value() ? std::min(h, next) : next;
   }
 
@@ -125,6 +140,7 @@ class Automatic {
       case Active::dopri5: return self.dopri5_->interpolate(t, x);
       case Active::dop853: return self.dop853_->interpolate(t, x);
       case Active::radau5: return self.radau5_->interpolate(t, x);
+      case Active::radau: return self.radau_->interpolate(t, x);
     }
   }
 
@@ -141,13 +157,18 @@ class Automatic {
       0.2;  // of the logarithm: in a vibration the estimate varies like the tangent of its phase
   static constexpr int nonstiff_run = 6;  // this many steps in a row that are not stiff reset the count
   static constexpr int required_stiff_steps = MethodChoice::min_stiff_steps;
+  static constexpr int most_required = 1 << 24;
   static constexpr int trial_steps = 10;       // of radau5; its step grows most in the first half of them
   static constexpr double trial_margin = 1.5;  // and somewhat in the second half
-  static constexpr int short_implicit_phase = 4 * required_stiff_steps;
+  static constexpr double rising_margin = 4;   // of radau, whose order may still rise
+  static constexpr int short_phase = 4 * required_stiff_steps;
 
+  bool is_implicit() const { return active_ == Active::radau5 || active_ == Active::radau; }
   const char* explicit_name() const {
     return options_.rtol > rtol_of_dopri5 ? explicit_rk::Dopri5::name : explicit_rk::Dop853::name;
   }
+  Active explicit_method() const { return options_.rtol > rtol_of_dopri5 ? Active::dopri5 : Active::dop853; }
+  Active implicit_method() const { return options_.rtol > rtol_of_radau5 ? Active::radau5 : Active::radau; }
   /// A change back pays below this |h lambda|. It is well below the value that leads to radau5.
   double explicit_limit() const { return options_.rtol > rtol_of_dopri5 ? vibration_start : 0.5 * accuracy_limit(); }
 
@@ -156,6 +177,7 @@ class Automatic {
       case Active::dopri5: dopri5_.emplace(system_, x, options_); return;
       case Active::dop853: dop853_.emplace(system_, x, options_); return;
       case Active::radau5: radau5_.emplace(system_, x, options_); return;
+      case Active::radau: radau_.emplace(system_, x, options_); return;
     }
   }
 
@@ -167,79 +189,92 @@ class Automatic {
   double accuracy_limit() const { return std::min(limit_of_dop853, 3 * 6 * std::pow(tolerance(), 0.125)); }
 
   void detect_stiffness() {
+    ++choice_.steps;
     const bool fifth = active_ == Active::dopri5;
     const double seen = fifth ? dopri5_->stiffness() : dop853_->stiffness();
     if (seen > 0 && std::isfinite(seen)) level_ += (std::log(seen) - level_) * (level_ == 0 ? 1 : smoothing);
     const double value = std::exp(level_);
     const double limit = fifth ? limit_of_dopri5 : limit_of_dop853;
-    if (stiff_steps_ == 0 && inaccurate_steps_ == 0) stiff_from_ = progress();
+    if (stiff_steps_ == 0 && inaccurate_steps_ == 0) stiff_from_ = now_;
     if (value > limit) {
       nonstiff_steps_ = 0;
       if (++stiff_steps_ >= choice_.required_stiff_steps)
-        plan(Active::radau5, ChangeReason::beyond_stability, limit, stiff_steps_);
+        plan_implicit(ChangeReason::beyond_stability, limit, stiff_steps_);
     } else if (++nonstiff_steps_ == nonstiff_run) {
       stiff_steps_ = 0;
     }
     inaccurate_steps_ = !fifth && value > accuracy_limit() ? inaccurate_steps_ + 1 : 0;
     if (inaccurate_steps_ >= confirming_steps * choice_.required_stiff_steps / required_stiff_steps &&
         !next_.has_value())
-      plan(Active::radau5, ChangeReason::beyond_accuracy, accuracy_limit(), inaccurate_steps_);
+      plan_implicit(ChangeReason::beyond_accuracy, accuracy_limit(), inaccurate_steps_);
     vibration_steps_ = fifth && value > vibration_limit() ? vibration_steps_ + 1 : 0;
     if (vibration_steps_ >= confirming_steps && !next_.has_value())
       plan(Active::dop853, ChangeReason::vibrations, vibration_limit(), vibration_steps_);
   }
 
+  /// The motion is stiff. If the explicit method has been in use for a short time only, the next change back requires
+  /// more steps.
+  void plan_implicit(ChangeReason why, double limit, int steps) {
+    const bool hasty = !choice_.changes.empty() && choice_.steps - steps < short_phase;
+    choice_.required_nonstiff_steps =
+        hasty ? std::min(most_required, 2 * choice_.required_nonstiff_steps) : required_stiff_steps;
+    explicit_cost_ = cost_per_time(stiff_from_, now_);
+    plan(implicit_method(), why, limit, steps);
+  }
+
+  void judge_implicit_method() {
+    if (explicit_cost_ > 0 && steps_ % trial_steps == trial_steps / 2) window_ = now_;
+    if (explicit_cost_ > 0 && steps_ % trial_steps == 0 && is_costlier()) return;
+    detect_end_of_stiffness();
+  }
+
   void detect_end_of_stiffness() {
-    ++implicit_steps_;
-    if (explicit_cost_ > 0 && implicit_steps_ == trial_steps / 2) trial_from_ = progress();
-    if (explicit_cost_ > 0 && implicit_steps_ == trial_steps && is_costlier()) return;
     const double value = h_ * spectral_radius();
+    choice_.steps += 1 + static_cast<int>(std::min(value / limit_of_dop853, 1e6));  // at least those that it replaces
+    choice_.steps = std::min(choice_.steps, most_required);
     nonstiff_steps_ = value < explicit_limit() ? nonstiff_steps_ + 1 : 0;
-    if (nonstiff_steps_ < required_stiff_steps) return;
+    if (nonstiff_steps_ < choice_.required_nonstiff_steps) return;
     choice_.required_stiff_steps =
-        implicit_steps_ < short_implicit_phase ? 2 * choice_.required_stiff_steps : required_stiff_steps;
-    plan(options_.rtol > rtol_of_dopri5 ? Active::dopri5 : Active::dop853, ChangeReason::no_longer_stiff,
-         explicit_limit(), nonstiff_steps_);
+        choice_.steps < short_phase ? std::min(most_required, 2 * choice_.required_stiff_steps) : required_stiff_steps;
+    plan(explicit_method(), ChangeReason::no_longer_stiff, explicit_limit(), nonstiff_steps_);
   }
 
   struct Progress {
     double t = 0, cost = 0;
   };
 
-  /// Cost of the active method up to t1, in evaluations of the right-hand side.
-  Progress progress() {
-    constexpr double operations = 40;  // of the right-hand side, for each component
-    constexpr double of_jacobian =
-        6;  // evaluations that a compiled df/dx takes; differences are evaluations themselves
-    const Statistics s = with_active([](auto& m) -> Statistics { return m.statistics(); });
-    const double m = static_cast<double>(size() - options_.quadratures);
-    // A real and a complex matrix are factorised, and a real and a complex system solved.
-    const double of_factorisation = 10.0 / 3 * m * m / operations, of_iteration = 10 * m / operations;
-    const auto count = [](std::size_t n) { return static_cast<double>(n); };
-    return {t1_, count(s.rhs_evaluations) + (s.difference_evaluations > 0 ? 0 : of_jacobian * count(s.jacobians)) +
-                     of_factorisation * count(s.factorisations) + of_iteration * count(s.newton_iterations)};
+  std::size_t unknowns() const { return size() - options_.quadratures; }
+  std::size_t stages() const { return active_ == Active::radau ? radau_->stages() : 3; }
+
+  /// Adds the work since the last step.
+  void add_work() {
+    const Statistics total = with_active([](auto& m) -> Statistics { return m.statistics(); });
+    now_ = {t1_, now_.cost + implicit::work(total - counted_, unknowns(), stages())};
+    counted_ = total;
   }
 
   static double cost_per_time(const Progress& from, const Progress& to) {
     return (to.cost - from.cost) / std::abs(to.t - from.t);
   }
 
-  /// End of the trial of radau5: whether it costs more than the explicit method, which then continues.
+  /// After each ten steps of the trial: whether the implicit method costs more than the explicit one, which then
+  /// continues. The order of radau rises until the trial ends.
   bool is_costlier() {
-    const double ratio = cost_per_time(trial_from_, progress()) / explicit_cost_;
+    const double ratio = cost_per_time(window_, now_) / explicit_cost_;
+    const bool rises = active_ == Active::radau && steps_ < 3 * trial_steps && ratio <= rising_margin;
+    if (rises) return false;
     explicit_cost_ = 0;
     if (!(ratio > trial_margin)) return false;
-    constexpr int after_failed_trial = 8, most = 1 << 24;
-    choice_.required_stiff_steps = std::min(most, after_failed_trial * choice_.required_stiff_steps);
-    plan(options_.rtol > rtol_of_dopri5 ? Active::dopri5 : Active::dop853, ChangeReason::costlier, ratio,
-         trial_steps - trial_steps / 2);
+    constexpr int after_failed_trial = 8;
+    choice_.required_stiff_steps = std::min(most_required, after_failed_trial * choice_.required_stiff_steps);
+    plan(explicit_method(), ChangeReason::costlier, ratio, trial_steps - trial_steps / 2);
     return true;
   }
 
   /// sqrt(|J J v| / |v|): exact at once if J J v = -omega^2 v. v turns towards the fastest motion from step to step.
   double spectral_radius() {
-    const implicit::Jacobian& J = radau5_->jacobian();
-    const std::size_t m = size() - options_.quadratures;
+    const implicit::Jacobian& J = active_ == Active::radau ? radau_->jacobian() : radau5_->jacobian();
+    const std::size_t m = unknowns();
     double* turned = scratch();
     const auto apply = [&](const std::vector<double>& from, double* to) {
       double sum = 0;
@@ -263,14 +298,13 @@ class Automatic {
   }
 
   void start_direction() {
-    const std::size_t m = size() - options_.quadratures;
+    const std::size_t m = unknowns();
     for (std::size_t i = 0; i < m; ++i)
       direction_[i] = (1 + 0.5 * static_cast<double>(i % 3)) / std::sqrt(static_cast<double>(m));
   }
 
   void plan(Active next, ChangeReason why, double limit, int steps) {
     planned_ = {t1_, choice_.method, choice_.method, why, limit, steps};
-    if (next == Active::radau5) explicit_cost_ = cost_per_time(stiff_from_, progress());
     next_ = next;
   }
 
@@ -280,6 +314,7 @@ class Automatic {
     active_ = *next_;
     next_.reset();
     choice_.method = active_ == Active::radau5   ? implicit::Radau5::name
+                     : active_ == Active::radau  ? implicit::Radau::name
                      : active_ == Active::dopri5 ? explicit_rk::Dopri5::name
                                                  : explicit_rk::Dop853::name;
     make(x);
@@ -287,8 +322,10 @@ class Automatic {
     planned_.t = t1_;
     planned_.to = choice_.method;
     choice_.changes.push_back(planned_);
-    stiff_steps_ = inaccurate_steps_ = nonstiff_steps_ = vibration_steps_ = implicit_steps_ = 0;
+    choice_.steps = steps_ = stiff_steps_ = inaccurate_steps_ = nonstiff_steps_ = vibration_steps_ = 0;
     level_ = 0;
+    counted_ = {};
+    window_ = now_;
     start_direction();
   }
 
@@ -301,13 +338,15 @@ class Automatic {
   std::optional<Dopri5> dopri5_;
   std::optional<Dop853> dop853_;
   std::optional<implicit::Radau5> radau5_;
+  std::optional<implicit::Radau> radau_;
   std::optional<Active> next_;
   MethodChange planned_{};
-  Statistics past_;
+  Statistics past_, counted_;
   double t1_ = 0, h_ = 0, level_ = 0;
-  Progress stiff_from_, trial_from_;
-  double explicit_cost_ = 0;  // per unit of time, before the trial of radau5; 0: no trial
-  int stiff_steps_ = 0, inaccurate_steps_ = 0, nonstiff_steps_ = 0, vibration_steps_ = 0, implicit_steps_ = 0;
+  Progress now_, window_, stiff_from_;
+  double explicit_cost_ = 0;  // per unit of time, before the trial of the implicit method; 0: no trial
+  int steps_ = 0;             // since the last change or the start
+  int stiff_steps_ = 0, inaccurate_steps_ = 0, nonstiff_steps_ = 0, vibration_steps_ = 0;
 };
 
 }  // namespace eom

@@ -66,11 +66,14 @@ inline std::string to_text(const MethodChange& change) {
   return "";
 }
 
-/// The method that `auto` (automatic.hpp) uses, and the history of its changes.
+/// The method that `auto` (automatic.hpp) uses, its counts, which continue after events, and the history of its
+/// changes.
 struct MethodChoice {
   static constexpr int min_stiff_steps = 15;
-  const char* method = nullptr;                // null: not chosen yet
-  int required_stiff_steps = min_stiff_steps;  // stiff steps required before the next change
+  const char* method = nullptr;  // null: not chosen yet
+  // Steps in a row that the next change requires: to the implicit method, and back.
+  int required_stiff_steps = min_stiff_steps, required_nonstiff_steps = min_stiff_steps;
+  int steps = 0;  // of the explicit method since the last change, or those that the implicit one replaced
   std::vector<MethodChange> changes;
 };
 
@@ -142,6 +145,20 @@ struct Statistics {
     newton_iterations += other.newton_iterations;
     newton_failures += other.newton_failures;
     return *this;
+  }
+  /// Counts since an earlier state of the same counts.
+  Statistics operator-(const Statistics& earlier) const {
+    Statistics rest = *this;
+    rest.steps -= earlier.steps;
+    rest.rejected -= earlier.rejected;
+    rest.rhs_evaluations -= earlier.rhs_evaluations;
+    rest.dense_fallbacks -= earlier.dense_fallbacks;
+    rest.jacobians -= earlier.jacobians;
+    rest.difference_evaluations -= earlier.difference_evaluations;
+    rest.factorisations -= earlier.factorisations;
+    rest.newton_iterations -= earlier.newton_iterations;
+    rest.newton_failures -= earlier.newton_failures;
+    return rest;
   }
 };
 

@@ -74,9 +74,10 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("auto: a decay a hundred thousand times faster than the motion leads to radau5, with the reason") {
+TEST_CASE("auto: a decay a hundred thousand times faster than the motion leads to radau5 or radau, with the reason") {
   for (const double tolerance : {1e-4, 1e-8, 1e-12}) {
     CAPTURE(tolerance);
+    const char* implicit = tolerance > 1e-5 ? "radau5" : "radau";
     MethodChoice choice, backwards;
     const Result found = eom::integrate("auto", Decay{}, 0, State{1}, 5, options_for(tolerance, choice));
     const auto mirrored = [](double t, const double* x, double* dx) {
@@ -86,12 +87,12 @@ TEST_CASE("auto: a decay a hundred thousand times faster than the motion leads t
     };
     CHECK(eom::integrate("auto", mirrored, 0, State{1}, -5, options_for(tolerance, backwards)).outcome ==
           eom::Outcome::done);
-    CHECK(backwards.method == std::string("radau5"));
+    CHECK(backwards.method == std::string(implicit));
     CHECK(backwards.changes.size() == 1);  // no change back
     CHECK(found.outcome == eom::Outcome::done);
-    CHECK(choice.method == std::string("radau5"));
+    CHECK(choice.method == std::string(implicit));
     REQUIRE(choice.changes.size() == 1);
-    CHECK(choice.changes[0].to == std::string("radau5"));
+    CHECK(choice.changes[0].to == std::string(implicit));
     CHECK(choice.changes[0].t < 5e-3);
     CHECK(eom::to_text(choice.changes[0]).find("stiff") != std::string::npos);
     CHECK(found.statistics.steps < 400);  // explicit methods need 80000 for stability alone
@@ -109,7 +110,7 @@ TEST_CASE("auto: vibrations that are not part of the motion count as stiff") {
     const Result found = eom::integrate("auto", elastic_pendulum, 0, hanging, 2, options_for(tolerance, choice));
     const Result reference =
         eom::integrate("dop853", elastic_pendulum, 0, hanging, 2, options_for(1e-11, of_reference));
-    CHECK(choice.method == std::string("radau5"));
+    CHECK(choice.method == std::string("radau"));
     CHECK(found.statistics.steps < reference.statistics.steps / 10);
     CHECK(std::abs(found.x[1] - reference.x[1]) < 100 * tolerance);
   }
@@ -131,7 +132,20 @@ TEST_CASE("auto: it changes back while the motion itself is fast, repeatedly") {
   }
 }
 
-TEST_CASE("auto: radau5 is given up if its steps cost more than those of the explicit method") {
+TEST_CASE("auto: at tight tolerances a stiff motion is left to radau, whose steps are longer than those of radau5") {
+  for (const double tolerance : {1e-8, 1e-9, 1e-10}) {
+    CAPTURE(tolerance);
+    MethodChoice choice, none;
+    const Result found = eom::integrate("auto", elastic_pendulum, 0, hanging, 2, options_for(tolerance, choice)),
+                 fifth = eom::integrate("radau5", elastic_pendulum, 0, hanging, 2, options_for(tolerance, none)),
+                 exact = eom::integrate("radau", elastic_pendulum, 0, hanging, 2, options_for(1e-13, none));
+    CHECK(choice.method == std::string("radau"));
+    CHECK(found.statistics.newton_iterations < fifth.statistics.newton_iterations / 2);
+    CHECK(std::abs(found.x[1] - exact.x[1]) < 100 * tolerance);
+  }
+}
+
+TEST_CASE("auto: the implicit method is given up if its steps cost more than those of the explicit method") {
   constexpr std::size_t components = 300;  // matrices of this size cost more than the few steps that stability takes
   const auto decays = [](double t, const double* x, double* dx) {
     for (std::size_t i = 0; i < components; ++i)
@@ -145,7 +159,7 @@ TEST_CASE("auto: radau5 is given up if its steps cost more than those of the exp
   const Result plain = eom::integrate("dop853", decays, 0, start, 3, options_for(1e-9, of_plain));
   CHECK(found.outcome == eom::Outcome::done);
   REQUIRE(choice.changes.size() >= 2);
-  CHECK(choice.changes[0].to == std::string("radau5"));
+  CHECK(choice.changes[0].to == std::string("radau"));
   CHECK(choice.changes[1].to == std::string("dop853"));
   CHECK(choice.changes[1].why == eom::ChangeReason::costlier);
   CHECK(choice.changes[1].limit > 1.5);
@@ -173,7 +187,7 @@ TEST_CASE("auto: dense output and events work across changes; the method is kept
     return times.push_back(point.t), eom::EventAction::restart;
   };
   Options options = options_for(1e-9, choice);
-  options.max_step = 0.1;  // radau5 interpolates stiff components by a cubic
+  options.max_step = 0.1;  // radau interpolates stiff components by a cubic
   const Result found = eom::integrate_events("auto", Decay{}, 0, State{1}, 10, options, g,
                                              {{eom::Direction::any, eom::Watch::breaking}}, handler, see);
   CHECK(found.outcome == eom::Outcome::done);
@@ -182,6 +196,45 @@ TEST_CASE("auto: dense output and events work across changes; the method is kept
     CHECK(std::abs(times[k] - std::numbers::pi * (static_cast<double>(k) + 0.5)) < 1e-7);
   CHECK(choice.changes.size() == 1);  // without memory the change would repeat after each event
   CHECK(worst < 1e-6);
+}
+
+// A room between two temperatures and the bimetallic pointer of its thermostat, a vibration of 20 rad/s that each
+// switch excites anew and that decays in 10 s. Then the motion is stiff until the next switch, 220 or 410 s after the
+// last.
+TEST_CASE("auto: a motion that is stiff between many events, each followed by a vibration, does not count as quiet") {
+  bool heater = true;
+  const auto thermostat = [&](double, const double* x, double* dx) {
+    dx[0] = x[1];
+    dx[1] = -400 * (x[0] - 0.02 * x[2]) - 2 * x[1];
+    dx[2] = ((heater ? 40 : 0) - x[2]) / 6000;
+    return 0;
+  };
+  const auto limits = [&](double, const double* x, double* value) {
+    return value[0] = x[2] - (heater ? 20.5 : 19.5), 0;
+  };
+  int switches = 0;
+  const auto handler = [&](const eom::EventPoint& point) {
+    heater = !heater;
+    point.x[1] += 0.5;
+    return ++switches, eom::EventAction::restart;
+  };
+  const auto run = [&](const char* method, const Options& options) {
+    heater = true;
+    switches = 0;
+    return eom::integrate_events(method, thermostat, 0, State{0.4, 0, 20.4}, 9000, options, limits,
+                                 {{eom::Direction::any, eom::Watch::breaking}}, handler);
+  };
+  for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
+    CAPTURE(tolerance);
+    MethodChoice choice, none;
+    const Result found = run("auto", options_for(tolerance, choice)),
+                 radau5 = run("radau5", options_for(tolerance, none));
+    CHECK(switches == 30);
+    CHECK(choice.method == std::string(tolerance > 1e-5 ? "radau5" : "radau"));
+    CHECK(choice.required_stiff_steps == MethodChoice::min_stiff_steps);
+    // dop853 takes more than 30000 steps.
+    CHECK(found.statistics.steps < 1.3 * static_cast<double>(radau5.statistics.steps));
+  }
 }
 
 TEST_CASE("auto: fixed steps do not change the method; the error for an unknown name lists auto") {

@@ -93,10 +93,12 @@ void transfer(Archive& archive, hybrid::ChartSwitch::State& state) {
 /// The history of changes of the method is not kept: only reports read it.
 template <class Archive>
 void transfer(Archive& archive, MethodChoice& choice) {
-  auto& [method, required, changes] = choice;
+  auto& [method, stiff, nonstiff, steps, changes] = choice;
   std::string name = method == nullptr ? "" : method;
   transfer(archive, name);
-  transfer(archive, required);
+  transfer(archive, stiff);
+  transfer(archive, nonstiff);
+  transfer(archive, steps);
   const MethodInfo* found = name.empty() ? nullptr : find_method(name);
   method = found == nullptr ? nullptr : found->name;
   changes.clear();
