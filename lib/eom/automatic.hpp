@@ -15,11 +15,11 @@
 // back after fewer than 60 steps of the explicit method before the motion was stiff. These counts are part of
 // Options::choice, since each event begins a new run. With fixed steps the method does not change.
 //
-// The first ten steps of an implicit method are a trial, up to thirty of radau, whose order may rise. Its cost per unit
-// of time, in evaluations of the right-hand side (implicit/work.hpp), is compared with that of the explicit method in
-// the steps that led to the change. If it is 1.5 times as high, the explicit method continues, and the next trial
-// requires eight times as many stiff steps. Operations are counted, never clocks, so that every process makes the same
-// choice.
+// The first ten steps of an implicit method are a trial. Its cost per unit of time, in evaluations of the right-hand
+// side (implicit/work.hpp), is compared with that of the explicit method in the steps that led to the change. If it is
+// between 1.5 and 4 times as high, the trial goes on, for at most thirty steps, since the step and the order of radau
+// may grow. If it remains higher, the explicit method continues, and the next trial requires eight times as many stiff
+// steps. Operations are counted, never clocks, so that every process makes the same choice.
 #pragma once
 
 #include <algorithm>
@@ -160,7 +160,7 @@ class Automatic {
   static constexpr int most_required = 1 << 24;
   static constexpr int trial_steps = 10;       // of radau5; its step grows most in the first half of them
   static constexpr double trial_margin = 1.5;  // and somewhat in the second half
-  static constexpr double rising_margin = 4;   // of radau, whose order may still rise
+  static constexpr double rising_margin = 4;   // below it the trial goes on: the step or the order may rise
   static constexpr int short_phase = 4 * required_stiff_steps;
 
   bool is_implicit() const { return active_ == Active::radau5 || active_ == Active::radau; }
@@ -258,11 +258,11 @@ class Automatic {
   }
 
   /// After each ten steps of the trial: whether the implicit method costs more than the explicit one, which then
-  /// continues. The order of radau rises until the trial ends.
+  /// continues. The trial goes on while the step or the order may rise.
   bool is_costlier() {
     const double ratio = cost_per_time(window_, now_) / explicit_cost_;
-    const bool rises = active_ == Active::radau && steps_ < 3 * trial_steps && ratio <= rising_margin;
-    if (rises) return false;
+    const bool may_fall = ratio > trial_margin && ratio <= rising_margin && steps_ < 3 * trial_steps;
+    if (may_fall) return false;
     explicit_cost_ = 0;
     if (!(ratio > trial_margin)) return false;
     constexpr int after_failed_trial = 8;

@@ -198,6 +198,24 @@ TEST_CASE("auto: dense output and events work across changes; the method is kept
   CHECK(worst < 1e-6);
 }
 
+TEST_CASE("auto: at rough tolerances the trial of radau5 lasts until its step has grown") {
+  const auto stiff_pendulum = [](double, const double* x, double* dx) {
+    dx[0] = x[2];
+    dx[1] = x[3];
+    dx[2] = x[0] * x[3] * x[3] + 9.81 * std::cos(x[1]) - 1e10 * (x[0] - 1);
+    dx[3] = (-9.81 * std::sin(x[1]) - 2 * x[2] * x[3]) / x[0];
+    return 0;
+  };
+  const State start{1 + 9.81e-10 * std::cos(0.5), 0.5, 0, 0};
+  for (const double tolerance : {5e-4, 2e-4}) {
+    CAPTURE(tolerance);
+    MethodChoice choice;
+    const Result found = eom::integrate("auto", stiff_pendulum, 0, start, 2, options_for(tolerance, choice));
+    CHECK(choice.method == std::string("radau5"));
+    CHECK(found.statistics.steps < 1000);  // after a trial of ten steps only: 70000
+  }
+}
+
 // A room between two temperatures and the bimetallic pointer of its thermostat, a vibration of 20 rad/s that each
 // switch excites anew and that decays in 10 s. Then the motion is stiff until the next switch, 220 or 410 s after the
 // last.

@@ -10,7 +10,7 @@
 namespace eom::implicit {
 
 /// A right-hand side has about this many operations for each component.
-inline constexpr double operations_per_component = 40;
+inline constexpr double operations_per_component = 60;
 /// A compiled df/dx takes about as many operations as this many evaluations.
 inline constexpr double evaluations_per_jacobian = 6;
 
