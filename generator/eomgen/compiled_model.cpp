@@ -203,6 +203,11 @@ int CompiledModel::mass(const Arguments& at, double* M, double* h) const { retur
 int CompiledModel::momenta(const Arguments& at, double* p, double* rates) const {
   return EOMGEN_CALL(momenta, p, rates);
 }
+int CompiledModel::momenta_jac(const Arguments& at, double* dmdx, double* dmdt) const {
+  return EOMGEN_CALL(momenta_jac, dmdx, dmdt);
+}
+int CompiledModel::momenta_jac_p(const Arguments& at, double* dmdp) const { return EOMGEN_CALL(momenta_jac_p, dmdp); }
+int CompiledModel::momenta_jac_u(const Arguments& at, double* dmdu) const { return EOMGEN_CALL(momenta_jac_u, dmdu); }
 int CompiledModel::constraints(const Arguments& at, double* psi, double* A, double* b) const {
   return EOMGEN_CALL(constraints, psi, A, b);
 }

@@ -30,8 +30,8 @@ struct CompileOptions {
   std::optional<std::string> solver = {};  // of simulations, one of solvers(); replaces the scene's
   /// Functions beside rhs and outputs: "jac", "jac_p", "jac_u", "jvp", "vjp", "adjoint", "hvp", "inverse", "regressor",
   /// "coriolis", "gravity", "mass", "momenta", "momentum", "constraints", "reactions", "events", "energy_gradients",
-  /// "frames", "taylor", and "outputs_jac", "reactions_jac", each also with "_p" and "_u". None given: jac, mass, and
-  /// for a model with constraints also constraints and reactions.
+  /// "frames", "taylor", and "momenta_jac", "outputs_jac", "reactions_jac", each also with "_p" and "_u". None given:
+  /// jac, mass, and for a model with constraints also constraints and reactions.
   std::optional<std::vector<std::string>> functions = {};
   std::vector<std::string> outputs = {};  // in addition to coordinates; replace the scene's; "all": every output
   bool charts = true;                     // allow simulations to change charts near singularities
@@ -107,6 +107,10 @@ class CompiledModel {
   int gravity(const Arguments& at, double* g) const;                 // dU/dq: n
   int mass(const Arguments& at, double* M, double* h) const;         // M qddot + h = A^T lambda: n x n by columns; n
   int momenta(const Arguments& at, double* p, double* rates) const;  // dL/d(qdot): n; rates without constraint forces
+  // Derivatives of the momenta and their rates, in one array, by states and time (or null), by parameters, by inputs.
+  int momenta_jac(const Arguments& at, double* dmdx, double* dmdt) const;         // 2 n x N by columns; 2 n
+  int momenta_jac_p(const Arguments& at, double* dmdp) const;                     // 2 n x P
+  int momenta_jac_u(const Arguments& at, double* dmdu) const;                     // 2 n x U
   int constraints(const Arguments& at, double* psi, double* A, double* b) const;  // A qdot + b = 0: m; m x n; m
   int reactions(const Arguments& at, double* lambda) const;  // multipliers of all constraints, eliminated ones too
   // Derivatives of the R multipliers by states and time (or null), by parameters, by inputs: by columns.

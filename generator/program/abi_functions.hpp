@@ -52,7 +52,7 @@ enum class Sweep : std::uint8_t {
   rows      // reverse: one right-hand side of the solve for each value
 };
 
-/// Whether a function is a Jacobian matrix of `outputs` or `reactions`.
+/// Whether a function is a Jacobian matrix of `outputs`, `reactions` or `momenta`.
 bool is_value_jacobian(const std::string& function);
 
 /// Solves the equations of motion and builds the functions of the ABI from the solution.

@@ -284,7 +284,9 @@ std::vector<Way> ways_to(const std::string& name, const AbiFunctions& functions,
   const bool of_outputs = name.starts_with("outputs");
   if (of_outputs && !functions.has_outputs(request.outputs)) return {};
   const system::EquationSystem& system = functions.system();
-  const std::size_t rows = of_outputs ? request.outputs.size() : system.reactions.size(),
+  const std::size_t rows = of_outputs                      ? request.outputs.size()
+                           : name.starts_with("reactions") ? system.reactions.size()
+                                                           : 2 * system.free.size(),
                     columns = name.ends_with("_jac") ? 2 * system.free.size() + system.states.size() + 1
                                                      : column_count(functions, name, request);
   std::vector<Way> ways;
@@ -293,14 +295,16 @@ std::vector<Way> ways_to(const std::string& name, const AbiFunctions& functions,
   return ways.empty() ? std::vector<Way>{{}} : ways;
 }
 
-/// The functions with `reactions` before their derivatives, which are compared with its differences.
+/// The functions with `reactions` and `momenta` before their derivatives, which are compared with their differences.
 std::vector<std::string> with_values(const std::vector<std::string>& with) {
-  const auto of_reactions = std::find_if(with.begin(), with.end(), [](const std::string& name) {
-    return is_value_jacobian(name) && name.starts_with("reactions");
-  });
   std::vector<std::string> result = with;
-  if (of_reactions != with.end() && std::find(with.begin(), with.end(), "reactions") == with.end())
-    result.insert(result.begin() + (of_reactions - with.begin()), "reactions");
+  for (const char* const values : {"reactions", "momenta"}) {
+    const auto derivative = std::find_if(result.begin(), result.end(), [values](const std::string& name) {
+      return is_value_jacobian(name) && name.starts_with(values);
+    });
+    if (derivative != result.end() && std::find(result.begin(), result.end(), values) == result.end())
+      result.insert(derivative, values);
+  }
   return result;
 }
 

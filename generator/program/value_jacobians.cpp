@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Functions of AbiFunctions for the derivatives of outputs and reactions y(t, x, p, u, qddot, lambda). Derivatives of
-// qddot and lambda come from the equations of motion at fixed qddot and lambda, with one factorisation:
+// Functions of AbiFunctions for the derivatives of outputs and reactions y(t, x, p, u, qddot, lambda), and of momenta,
+// which are without qddot and lambda. Derivatives of qddot and lambda come from the equations of motion at fixed qddot
+// and lambda, with one factorisation:
 //   columns: dy/ds = d_s y + (dy/dqddot) dqddot/ds + (dy/dlambda) dlambda/ds, for each symbol s;
 //   rows:    dy/ds = d_s [y + mu^T (f + A^T lambda - M qddot) + nu^T (gamma + A qddot)], with mu and nu for each y from
 //            M mu = dy/dqddot + A^T nu,   A mu = -dy/dlambda.
@@ -19,12 +20,12 @@ using symbolic::SymbolKind;
 
 namespace {
 
-constexpr const char *of_outputs = "outputs_jac", *of_reactions = "reactions_jac";
+constexpr const char *of_outputs = "outputs_jac", *of_reactions = "reactions_jac", *of_momenta = "momenta_jac";
 
 }  // namespace
 
 bool is_value_jacobian(const std::string& function) {
-  return function.starts_with(of_outputs) || function.starts_with(of_reactions);
+  return function.starts_with(of_outputs) || function.starts_with(of_reactions) || function.starts_with(of_momenta);
 }
 
 bool AbiFunctions::has_outputs(const std::vector<std::string>& names) const {
@@ -52,6 +53,9 @@ FunctionExpressions AbiFunctions::value_jacobian(const std::string& name, const 
   std::vector<Ref> values;
   if (name.starts_with(of_outputs)) {
     values = output_values(outputs);
+  } else if (name.starts_with(of_momenta)) {
+    for (const ResultExpressions& part : momenta().results)
+      values.insert(values.end(), part.entries.begin(), part.entries.end());
   } else {
     for (const system::Reaction& reaction : system_.reactions) values.push_back(reaction.value);
   }

@@ -102,8 +102,18 @@ class DerivativeComparisons::Comparison {
     if (!values) return noise;
     const AbiResults size = value_sizes(program_, of, at_, *values, oracle_);
     if (size.empty()) return noise;
-    for (const Real& one : size[0]) noise.push_back(one * power_of_ten(-table_.digits()));
+    for (std::size_t r = 0; r < arrays_of(of); ++r)
+      for (const Real& one : size[r]) noise.push_back(one * power_of_ten(-table_.digits()));
     return noise;
+  }
+
+  /// The number of arrays of a function whose derivatives are in one array.
+  static std::size_t arrays_of(const std::string& function) { return function == "momenta" ? 2 : 1; }
+
+  static Numbers in_one_array(const AbiResults& arrays, const std::string& of) {
+    Numbers result;
+    for (std::size_t r = 0; r < arrays_of(of); ++r) result.insert(result.end(), arrays[r].begin(), arrays[r].end());
+    return result;
   }
 
   /// Compares the columns of array `r`, times the components of a direction, with the central difference along it.
@@ -112,19 +122,20 @@ class DerivativeComparisons::Comparison {
     const Numbers& lost = noise(of);
     if (!slope || lost.empty()) return;
     const std::size_t rows = lost.size();
+    const Numbers expected = in_one_array(slope->values, of), errors = in_one_array(slope->errors, of);
     double largest = 0;
     for (std::size_t i = 0; i < rows; ++i) {
-      Real sum = 0, size = lost[i] + slope->errors[0][i];
+      Real sum = 0, size = lost[i] + errors[i];
       for (std::size_t j = 0; j < direction.size(); ++j) {
         sum = sum + (*values_)[r][i + rows * j] * direction[j];
         size = size + (*sizes_)[r][i + rows * j] * cln::abs(direction[j]);
       }
-      largest = std::max(largest, relative_difference(sum - slope->values[0][i], size));
+      largest = std::max(largest, relative_difference(sum - expected[i], size));
     }
     note(name, of == "rhs" ? differences : ("differences of " + of).c_str(), largest);
   }
 
-  /// The derivatives of `outputs` or `reactions`, which are in the program too.
+  /// The derivatives of `outputs`, `reactions` or `momenta`, which are in the program too.
   bool value_jacobian(const std::string& function) {
     const std::size_t end = function.find("_jac");
     if (end == std::string::npos) return false;

@@ -327,8 +327,8 @@ class Model:
         ``parameters`` replaces values of parameters and initial values. ``functions``: beside "rhs" and "outputs", of
         "jac", "jac_p", "jac_u", "jvp", "vjp", "adjoint", "hvp", "inverse", "regressor", "coriolis", "gravity", "mass",
         "momenta", "momentum", "constraints", "reactions", "events", "energy_gradients", "frames", "taylor", and
-        "outputs_jac", "reactions_jac", each also with "_p" and "_u"; by default "jac", "mass", and for a model with
-        constraints "constraints" and "reactions". ``solver``: of simulations.
+        "momenta_jac", "outputs_jac", "reactions_jac", each also with "_p" and "_u"; by default "jac", "mass", and for a
+        model with constraints "constraints" and "reactions". ``solver``: of simulations.
         """
         options = {
             "scene": scene,

@@ -86,6 +86,11 @@ inline int reactions_jac_t(const CompiledModel& model, const Arguments& at, doub
   dldx.resize(model.reactions().size() * model.states().size());
   return model.reactions_jac(at, dldx.data(), results[0]);
 }
+inline int momenta_jac_t(const CompiledModel& model, const Arguments& at, double* const* results) {
+  thread_local std::vector<double> dmdx;
+  dmdx.resize(2 * model.coordinate_count() * model.states().size());
+  return model.momenta_jac(at, dmdx.data(), results[0]);
+}
 
 inline int jac_t(const CompiledModel& model, const Arguments& at, double* const* results) {
   thread_local std::vector<double> dfdx;
@@ -217,6 +222,33 @@ inline constexpr std::array functions{
         2,
         {{{Size::coordinates}, {Size::coordinates}}},
         [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.momenta(at, r[0], r[1]); }},
+    Function{
+        "momenta_jac",
+        "momenta_jac",
+        "momenta_jac" EOMGEN_ARGUMENTS "d(p, rates)/dx at fixed inputs: (2 n, N), or (K, 2 n, N). Arguments as of rhs.",
+        1,
+        {{{Size::slopes, Size::states}}},
+        [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.momenta_jac(at, r[0], nullptr); }},
+    Function{"momenta_jac_t",
+             "momenta_jac",
+             "momenta_jac_t" EOMGEN_ARGUMENTS
+             "d(p, rates)/dt at fixed x and inputs: (2 n,), or (K, 2 n). Arguments as of rhs.",
+             1,
+             {{{Size::slopes}}},
+             momenta_jac_t},
+    Function{"momenta_jac_p",
+             "momenta_jac_p",
+             "momenta_jac_p" EOMGEN_ARGUMENTS
+             "d(p, rates)/d(parameters): (2 n, P), or (K, 2 n, P). Arguments as of rhs.",
+             1,
+             {{{Size::slopes, Size::parameters}}},
+             [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.momenta_jac_p(at, r[0]); }},
+    Function{"momenta_jac_u",
+             "momenta_jac_u",
+             "momenta_jac_u" EOMGEN_ARGUMENTS "d(p, rates)/d(inputs): (2 n, U), or (K, 2 n, U). Arguments as of rhs.",
+             1,
+             {{{Size::slopes, Size::inputs}}},
+             [](const CompiledModel& f, const Arguments& at, double* const* r) { return f.momenta_jac_u(at, r[0]); }},
     Function{"constraints",
              "constraints",
              "constraints" EOMGEN_ARGUMENTS

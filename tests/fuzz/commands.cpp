@@ -147,7 +147,7 @@ const std::vector<Words>& derive_calls() {
        "--json"},
       {"emit", "-o", "OUT", "--target", "python", "--approach", "I", "--json"},
       {"emit", "-o", "OUT", "--target", "latex", "--json"},
-      {"emit", "-o", "OUT", "--target", "c", "--with", "taylor,momenta", "--json"},
+      {"emit", "-o", "OUT", "--target", "c", "--with", "taylor,momenta_jac,momenta_jac_p,momenta_jac_u", "--json"},
   };
   return all;
 }

@@ -38,28 +38,14 @@ std::vector<std::string> names(const std::vector<Quantity>& list) {
 TEST_CASE("library: compiled functions of a driven pendulum have their values, in both tiers") {
   const Model model = Model::from(driven_pendulum(), "driven");
   for (const char* tier : {"compiled", "auto"}) {
-    const CompiledModel f = model.compile({.tier = tier, .functions = std::vector<std::string>{"jac",
-                                                                                               "jac_p",
-                                                                                               "jac_u",
-                                                                                               "mass",
-                                                                                               "momenta",
-                                                                                               "events",
-                                                                                               "energy_gradients",
-                                                                                               "frames",
-                                                                                               "taylor",
-                                                                                               "jvp",
-                                                                                               "vjp",
-                                                                                               "adjoint",
-                                                                                               "hvp",
-                                                                                               "inverse",
-                                                                                               "coriolis",
-                                                                                               "gravity",
-                                                                                               "outputs_jac",
-                                                                                               "outputs_jac_p",
-                                                                                               "outputs_jac_u",
-                                                                                               "reactions_jac",
-                                                                                               "regressor",
-                                                                                               "momentum"}});
+    const CompiledModel f =
+        model.compile({.tier = tier,
+                       .functions = std::vector<std::string>{
+                           "jac",           "jac_p",         "jac_u",         "mass",      "momenta",
+                           "momenta_jac",   "momenta_jac_p", "momenta_jac_u", "events",    "energy_gradients",
+                           "frames",        "taylor",        "jvp",           "vjp",       "adjoint",
+                           "hvp",           "inverse",       "coriolis",      "gravity",   "outputs_jac",
+                           "outputs_jac_p", "outputs_jac_u", "reactions_jac", "regressor", "momentum"}});
     CHECK(names(f.states()) == std::vector<std::string>{"q", "q_dot"});
     CHECK(names(f.parameters()) == std::vector<std::string>{"k", "k2"});
     CHECK(names(f.inputs()) == std::vector<std::string>{"u"});
@@ -114,6 +100,17 @@ TEST_CASE("library: compiled functions of a driven pendulum have their values, i
     CHECK(h[0] == doctest::Approx(4 * std::sin(q) - 0.5).epsilon(1e-15));
     REQUIRE(f.momenta(at, p, rate) == 0);
     CHECK(p[0] == x[1]);
+    double mx[4], mt[2], mp[4], mu[2];
+    REQUIRE(f.momenta_jac(at, mx, mt) == 0);
+    CHECK(mx[0] == 0);
+    CHECK(mx[1] == doctest::Approx(-4 * std::cos(q)).epsilon(1e-15));
+    CHECK(mx[2] == 1);
+    CHECK(mt[1] == 0);
+    REQUIRE(f.momenta_jac_p(at, mp) == 0);
+    CHECK(mp[1] == doctest::Approx(-std::sin(q)).epsilon(1e-15));
+    REQUIRE(f.momenta_jac_u(at, mu) == 0);
+    CHECK(mu[0] == 0);
+    CHECK(mu[1] == 1);
     std::vector<double> y(f.outputs().size()), g(f.event_count()), c(2 * 3);
     REQUIRE(f.outputs(at, y.data()) == 0);
     const auto energy = std::find_if(f.outputs().begin(), f.outputs().end(),

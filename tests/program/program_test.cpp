@@ -120,7 +120,8 @@ TEST_CASE("program: unknown functions and outputs are rejected by name") {
   };
   CHECK(message({"rhs_batch"}, {}) ==
         "there is no function `rhs_batch` / available functions: jac, jac_p, jac_u, jvp, vjp, adjoint, hvp, inverse, "
-        "regressor, coriolis, gravity, mass, momenta, energy_gradients, momentum, constraints, reactions, "
+        "regressor, coriolis, gravity, mass, momenta, momenta_jac, momenta_jac_p, momenta_jac_u, energy_gradients, "
+        "momentum, constraints, reactions, "
         "reactions_jac, reactions_jac_p, reactions_jac_u, outputs, outputs_jac, outputs_jac_p, outputs_jac_u, events, "
         "contact_rows, resets, frames, taylor");
   CHECK(message({"jacobian"}, {}).starts_with("there is no function `jacobian`"));

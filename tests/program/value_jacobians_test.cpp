@@ -89,7 +89,8 @@ TEST_CASE("value jacobians: rows and columns have the same entries") {
     std::vector<std::string> outputs;
     for (const auto& output : system.outputs) outputs.push_back(output.name);
     constexpr std::size_t parameters = 3;
-    for (const char* name : {"outputs_jac", "outputs_jac_p", "reactions_jac", "reactions_jac_p"}) {
+    for (const char* name :
+         {"outputs_jac", "outputs_jac_p", "reactions_jac", "reactions_jac_p", "momenta_jac", "momenta_jac_p"}) {
       CAPTURE(name);
       const auto entries = [&](program::Sweep sweep) {
         return expressions_at(*functions.system().dag,
@@ -105,6 +106,9 @@ TEST_CASE("value jacobians: those of constraint forces need one factorisation, a
   const program::Program built = build(system, {"reactions_jac"});
   CHECK(built.functions[1].name == "reactions");
   CHECK(built.functions[2].name == "reactions_jac");
+  const program::Program with_momenta = build(system, {"momenta_jac"});
+  CHECK(with_momenta.functions[1].name == "momenta");
+  CHECK(with_momenta.functions[2].name == "momenta_jac");
   const program::Program with_jac = build(system, {"jac", "reactions_jac"});
   CHECK(function(with_jac, "reactions_jac").operations.div <= function(with_jac, "jac").operations.div + 1);
 }
