@@ -4,10 +4,12 @@
 All without contacts, limits and friction of joints; a joint that follows another is free. The others get the robot at its
 simplest: a URDF file without shapes, links on fixed joints merged into those that move, angles in all digits. The programs
 get the same random states; `differs` is relative to the largest acceleration of each state. ENGINES is the registry: one
-entry for each program, with its source in bench/engines. A program that is not installed is left out by name.
+entry for each program, with its source in bench/engines. A program that is not installed is left out by name. Flags for
+one outside the folders of the system are in the environment: PINOCCHIO_CXXFLAGS="-I/opt/pinocchio/include".
 """
 import json
 import math
+import os
 import pathlib
 import random
 import shlex
@@ -24,6 +26,7 @@ STATES = 20
 SOURCES = pathlib.Path(__file__).parent / "engines"
 NATIVE = ["-O3", "-march=native", "-ffp-contract=off"]
 GENERIC = ["-O2"]  # the processor that packages of Debian are compiled for
+HEADER_ONLY = ("-std=c++17", "-O3", "-march=native", "-DNDEBUG", "-w")
 
 
 class Engine(typing.NamedTuple):
@@ -41,7 +44,7 @@ ENGINES = [
     Engine("DART", "dart.cpp", "dart/utils/urdf/DartLoader.hpp", "dart", ["-ldart-utils-urdf"], "urdf"),
     Engine("Simbody", "simbody.cpp", "Simbody.h", "simbody", [], "links",
            ("-std=c++11", "-O3")),  # objects of Debian's library have another layout with NDEBUG
-    Engine("Pinocchio", "pinocchio.cpp", "pinocchio/config.hpp", "pinocchio", [], "urdf"),
+    Engine("Pinocchio", "pinocchio.cpp", "pinocchio/config.hpp", "pinocchio", [], "links", HEADER_ONLY),
     Engine("RBDL", "rbdl.cpp", "rbdl/rbdl.h", "rbdl", ["-lrbdl_urdfreader"], "urdf"),
 ]
 
@@ -53,23 +56,27 @@ def call(*command, text=None):
     return result.stdout
 
 
-def package_flags(package):
-    if not package:
-        return []
-    result = subprocess.run(["pkg-config", "--cflags", "--libs", package], capture_output=True, text=True)
-    return shlex.split(result.stdout) if result.returncode == 0 else []
+def flags_of(engine):
+    """Those of the environment, or else of pkg-config."""
+    given = os.environ.get(engine.name.upper() + "_CXXFLAGS")
+    if given or not engine.package:
+        return shlex.split(given or "")
+    result = subprocess.run(["pkg-config", "--cflags", "--libs", engine.package], capture_output=True, text=True)
+    flags = shlex.split(result.stdout) if result.returncode == 0 else []
+    # Instances of Pinocchio's templates in its library are not compiled for this processor.
+    return [flag for flag in flags if not flag.startswith(("-std", "-DPINOCCHIO_ENABLE_TEMPLATE_INSTANTIATION"))]
 
 
 def compiled(engine, folder):
     """The program, or None if it is not installed."""
-    flags = package_flags(engine.package)
+    flags = flags_of(engine)
     probe = subprocess.run(["c++", *flags, "-E", "-x", "c++", "-"], input=f"#include <{engine.header}>\n", capture_output=True, text=True)
     if probe.returncode != 0:
         return None
-    # Without -march=native, which changes the layout of Eigen's objects in installed libraries.
-    call("c++", *engine.flags, SOURCES / engine.source, "-o", folder / engine.name,
-         *[flag for flag in flags if not flag.startswith("-std")], *engine.libraries)
-    return folder / engine.name
+    # -march=native changes the layout of Eigen's objects: only for programs without an installed library.
+    target = folder / pathlib.Path(engine.source).stem
+    call("c++", *engine.flags, SOURCES / engine.source, "-o", target, *flags, *engine.libraries)
+    return target
 
 
 def emitted(source, name, flags, target):
@@ -111,9 +118,24 @@ def merged(a, b):
     return mass, centre, matrix_sum(a[2], b[2], *(steiner(m, robots.add(c, centre, -1)) for m, c, _ in (a, b)))
 
 
-def links_of(path):
-    """The links that move, parents first, with all that is fixed to them."""
-    robot = robots.Robot(path, False)
+def depth_first(links):
+    """The same links, each branch in one piece: Pinocchio's algorithms assume it."""
+    order = []
+
+    def append_branches_of(parent):
+        for i, link in enumerate(links):
+            if link.parent == parent:
+                order.append(i)
+                append_branches_of(i)
+
+    append_branches_of(-1)
+    place = {-1: -1} | {i: k for k, i in enumerate(order)}
+    return [links[i]._replace(parent=place[links[i].parent]) for i in order]
+
+
+def links_of(path, floating=False):
+    """The links that move, depth first, with all that is fixed to them. The base of a floating robot has six joints."""
+    robot = robots.Robot(path, floating)
     links, frames = [], []  # frames: of each joint of the file, the moving link and the pose in it
     for name, (kind, parent, place, axes, axis, mass, centre, tensor, damping, _) in zip(robot.names, robot.joints):
         owner, R, p = frames[parent] if parent >= 0 else (-1, robots.by_rpy([0, 0, 0]), [0, 0, 0])
@@ -129,7 +151,7 @@ def links_of(path):
             link = links[owner]
             mass, centre, tensor = merged((link.mass, link.centre, link.tensor), here)
             links[owner] = link._replace(mass=mass, centre=centre, tensor=tensor)
-    return links
+    return depth_first(links)
 
 
 def numbers(values):
@@ -166,7 +188,7 @@ def write_urdf(links, path):
 
 
 def write_links(links, path):
-    """Lines of numbers, as bench/engines/simbody.cpp reads them."""
+    """Lines of numbers, as bench/engines/simbody.cpp and pinocchio_model.hpp read them."""
     with path.open("w") as file:
         for link in links:
             J = matrix_sum(link.tensor, steiner(link.mass, link.centre))

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pinocchio: aba, the recursion of articulated bodies.
 #include <pinocchio/algorithm/aba.hpp>
-#include <pinocchio/parsers/urdf.hpp>
 
 #include "measure.hpp"
+#include "pinocchio_model.hpp"
 
 namespace {
 
 class Pinocchio {
  public:
-  explicit Pinocchio(const engines::Arguments& arguments) : n_(arguments.n), damping_(arguments.damping) {
-    pinocchio::urdf::buildModel(arguments.file, model_);
-    if (static_cast<std::size_t>(model_.nv) != n_ || model_.nq != model_.nv)
-      throw std::runtime_error("another number of coordinates");
-    model_.gravity.linear(Eigen::Vector3d(0, 0, -9.81));
-    data_ = pinocchio::Data(model_);
+  explicit Pinocchio(const engines::Arguments& arguments)
+      : n_(arguments.n),
+        damping_(arguments.damping),
+        model_(engines::model_of(engines::links_of(arguments.file))),
+        data_(model_) {
+    if (static_cast<std::size_t>(model_.nv) != n_) throw std::runtime_error("another number of coordinates");
     for (const std::string& name : arguments.joints) {
       if (!model_.existJointName(name)) throw std::runtime_error("no joint " + name);
       place_.push_back(model_.joints[model_.getJointId(name)].idx_v());
