@@ -27,18 +27,56 @@ struct ModelFunctions {
   int jac_u(double t, const double* x, const double* p, const double* u, const int* mode, double* dfdu) const {
     return model.jac_u({t, x, p, u, mode}, dfdu);
   }
+  int momenta(double t, const double* x, const double* p, const double* u, const int* mode, double* momenta,
+              double* rates) const {
+    return model.momenta({t, x, p, u, mode}, momenta, rates);
+  }
+  int momenta_jac(double t, const double* x, const double* p, const double* u, const int* mode, double* dmdx,
+                  double* dmdt) const {
+    return model.momenta_jac({t, x, p, u, mode}, dmdx, dmdt);
+  }
+  int momenta_jac_p(double t, const double* x, const double* p, const double* u, const int* mode, double* dmdp) const {
+    return model.momenta_jac_p({t, x, p, u, mode}, dmdp);
+  }
+  int momenta_jac_u(double t, const double* x, const double* p, const double* u, const int* mode, double* dmdu) const {
+    return model.momenta_jac_u({t, x, p, u, mode}, dmdu);
+  }
 };
 
-eom::discrete::Step new_step(const CompiledModel& model, const std::string& method) {
+void require_function(const CompiledModel& model, const std::string& method, const char* function) {
+  if (model.has(function)) return;
+  throw Error("step", {},
+              "the method '" + method + "' needs the function '" + std::string(function) + "', which was not compiled",
+              "name it in CompileOptions::functions, or choose rk4");
+}
+
+/// Refuses models whose momenta do not change by their rates alone.
+void check_variational(const CompiledModel& model, bool has_contacts) {
+  const char* obstacle = nullptr;
+  if (!model.constraints().empty())
+    obstacle = "constraints with multipliers";
+  else if (has_contacts)
+    obstacle = "contacts";
+  else if (model.states().size() != 2 * model.coordinate_count())
+    obstacle = "states beside coordinates and rates";
+  if (obstacle == nullptr) return;
+  throw Error("step", {},
+              std::string("the method '") + eom::discrete::Variational::name + "' takes no model with " + obstacle,
+              "choose midpoint");
+}
+
+eom::discrete::Step new_step(const CompiledModel& model, const std::string& method, bool has_contacts) {
   const std::vector<std::string> known = FixedStep::methods();
   if (std::find(known.begin(), known.end(), method) == known.end()) {
     std::string names;
     for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
     throw Error("step", {}, "no method of a step is called '" + method + "'", "choose one of " + names);
   }
-  if (method == eom::discrete::Midpoint::name && !model.has("jac"))
-    throw Error("step", {}, "the method 'midpoint' needs the function 'jac', which was not compiled",
-                "name it in CompileOptions::functions, or choose rk4");
+  if (method == eom::discrete::Midpoint::name) require_function(model, method, "jac");
+  if (method == eom::discrete::Variational::name) {
+    check_variational(model, has_contacts);
+    for (const char* function : {"momenta", "momenta_jac"}) require_function(model, method, function);
+  }
   return {method, {model.states().size(), model.parameters().size(), model.inputs().size()}};
 }
 
@@ -51,7 +89,8 @@ struct FixedStep::Data {
 };
 
 FixedStep::FixedStep(CompiledModel model, const std::string& method) {
-  eom::discrete::Step step = new_step(model, method);
+  const run::Code& code = model.state_->code();
+  eom::discrete::Step step = new_step(model, method, !code.contacts.empty() || !code.contact_set.contacts.empty());
   const bool vary = model.state_->constant_inputs.empty() && !model.inputs().empty();
   data_ = std::make_unique<Data>(Data{std::move(model), std::move(step), vary});
 }

@@ -15,10 +15,11 @@ namespace eomgen {
 /// computed. Arrays must not overlap with arguments.
 struct StepDerivatives {
   double* x = nullptr;           // dx1/dx: N x N
-  double* parameters = nullptr;  // dx1/dp: N x P, each entry of p by itself; needs "jac_p"
-  double* inputs = nullptr;      // dx1/du: N x U; needs "jac_u"
+  double* parameters = nullptr;  // dx1/dp: N x P, each entry of p by itself; needs "jac_p" (*)
+  double* inputs = nullptr;      // dx1/du: N x U; needs "jac_u" (*)
   double* t = nullptr;           // dx1/dt at fixed h and inputs: N
   double* h = nullptr;           // dx1/dh at fixed inputs: N
+  // (*) "variational2": "momenta_jac_p" and "momenta_jac_u"
 };
 
 /// A step of a method, with its work space. Results depend on the arguments of a call only. A call allocates nothing,
@@ -29,14 +30,16 @@ struct StepDerivatives {
 /// Constraints with multipliers hold as far as the method conserves them: a Simulation projects, a step does not.
 class FixedStep {
  public:
-  /// method: one of methods(). All derivatives need "jac", and so does each step of "midpoint". Throws Error for an
-  /// unknown method, and where "midpoint" is asked for without "jac".
+  /// method: one of methods(). All derivatives need "jac", and so does each step of "midpoint". A step of
+  /// "variational2" needs "momenta" and "momenta_jac" in its place, and takes models without contacts, constraints with
+  /// multipliers and states of first order. Throws Error for an unknown method and what it lacks.
   explicit FixedStep(CompiledModel model, const std::string& method = "rk4");
   FixedStep(FixedStep&&) noexcept;
   FixedStep& operator=(FixedStep&&) noexcept;
   ~FixedStep();
 
-  /// "rk4", "dopri5", "tsit5", "dop853" (explicit, order 4, 5, 5, 8), "midpoint" (implicit, order 2, symplectic).
+  /// "rk4", "dopri5", "tsit5", "dop853" (explicit, order 4, 5, 5, 8), "midpoint", "variational2" (implicit, order 2,
+  /// symplectic).
   static std::vector<std::string> methods();
   /// A step could not be solved: a shorter one may succeed.
   static constexpr int no_convergence = -2;

@@ -44,7 +44,7 @@ class StepJacobian(NamedTuple):
 
     ``x1``: (N,). ``A``: dx1/dx, (N, N). ``B``: dx1/d(inputs), (N, U); None unless "jac_u" was compiled. ``P``:
     dx1/d(parameters), (N, P), each parameter by itself; None unless "jac_p" was compiled. ``h``, ``t``: dx1/dh and
-    dx1/dt, (N,).
+    dx1/dt, (N,). For "variational2" these functions are "momenta_jac_u" and "momenta_jac_p".
     """
 
     x1: "NDArray[Any]"
@@ -204,7 +204,7 @@ class CompiledModel(_core.CompiledModel):
 
     @staticmethod
     def step_methods() -> List[str]:
-        """The methods of ``step``: explicit ones of order 4, 5, 5 and 8, and the implicit midpoint rule."""
+        """The methods of ``step``: explicit ones of order 4, 5, 5, 8; implicit ones of order 2 (midpoint, variational)."""
         return _core.CompiledModel._step_methods()
 
     def step(
@@ -213,7 +213,7 @@ class CompiledModel(_core.CompiledModel):
         """The state after one step of a fixed-step method: (N,), or (K, N) of K states.
 
         Arguments as of rhs. ``h`` in s: a number or (K,), may be negative. ``method``: one of ``step_methods()``;
-        "midpoint" needs "jac". Inputs are held over the step. Contacts and kinks stay in ``mode``, events are ignored,
+        "midpoint" needs "jac", "variational2" needs "momenta" and "momenta_jac". Inputs are held over the step. Contacts and kinks stay in ``mode``, events are ignored,
         and no constraint is projected: a Simulation does that.
         """
         return self._step(t, h, x, inputs, parameters, mode, method, False)[0]
@@ -221,7 +221,7 @@ class CompiledModel(_core.CompiledModel):
     def step_jac(
         self, t: Any, h: Any, x: Any, inputs: Any = None, parameters: Any = None, mode: Any = None, method: str = "rk4"
     ) -> StepJacobian:
-        """The same with its derivatives, which are exact for the method. Needs "jac".
+        """The same with its derivatives, which are exact for the method. Needs "jac", or the functions of the method.
 
         Derivatives of a motion follow by the chain rule: S = step.A @ S + step.P.
         """

@@ -290,10 +290,11 @@ py::tuple fixed_step(const CompiledModel& model, const py::object& t_given, cons
                               ResultShape{Size::states, Size::parameters},
                               ResultShape{Size::states},
                               ResultShape{Size::states}};
+  const std::string slopes = method == "variational2" ? "momenta_jac" : "jac";
   const std::array<bool, 6> wanted{true,
                                    derivatives,
-                                   derivatives && (U == 0 || model.has("jac_u")),
-                                   derivatives && (P == 0 || model.has("jac_p")),
+                                   derivatives && (U == 0 || model.has(slopes + "_u")),
+                                   derivatives && (P == 0 || model.has(slopes + "_p")),
                                    derivatives,
                                    derivatives};
   std::array<py::object, 6> results;
@@ -324,7 +325,8 @@ py::tuple fixed_step(const CompiledModel& model, const py::object& t_given, cons
       }
     }
   }
-  if (first == CompiledModel::not_compiled || (first != 0 && !many)) refuse({"step", "jac", "", 1, {}, nullptr}, first);
+  if (first == CompiledModel::not_compiled || (first != 0 && !many))
+    refuse({"step", slopes.c_str(), "", 1, {}, nullptr}, first);
   return py::make_tuple(results[0], results[1], results[2], results[3], results[4], results[5]);
 }
 

@@ -34,7 +34,8 @@ class CompiledModelTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.model = shipped("cart_pendulum")
-        functions = ["jac", "jac_u", "jac_p", "mass", "momenta", "energy_gradients", "taylor"]
+        functions = ["jac", "jac_u", "jac_p", "mass", "momenta", "energy_gradients", "taylor", "momenta_jac",
+                     "momenta_jac_p", "momenta_jac_u"]
         cls.f = cls.model.compile(functions=functions, outputs="all")
 
     def states(self, count):
@@ -157,6 +158,12 @@ class CompiledModelTest(unittest.TestCase):
         np.testing.assert_allclose(np.linalg.solve(mass, -bias), self.f.rhs(0.0, x)[2:], rtol=1e-12)
         momenta, _ = self.f.momenta(0.0, x)
         np.testing.assert_allclose(momenta, mass @ x[2:], rtol=1e-13)
+        slopes = self.f.momenta_jac(0.0, x)
+        self.assertEqual(slopes.shape, (4, 4))
+        np.testing.assert_allclose(slopes[:2, 2:], mass, rtol=1e-13, atol=1e-15)
+        np.testing.assert_array_equal(self.f.momenta_jac_t(0.0, x), np.zeros(4))
+        self.assertEqual(self.f.momenta_jac_u(0.0, x).shape, (4, 1))
+        self.assertEqual(self.f.momenta_jac_p(0.0, x).shape, (4, len(self.f.parameters)))
         energies, dT, dU = self.f.energy_gradients(0.0, x)
         np.testing.assert_allclose(energies, [x[2:] @ mass @ x[2:] / 2, -m * g * l * np.cos(x[1])], rtol=1e-13)
         np.testing.assert_allclose(dT[2:], momenta, rtol=1e-13)
@@ -215,7 +222,7 @@ class CompiledModelTest(unittest.TestCase):
         np.testing.assert_allclose(np.polynomial.polynomial.polyval(h, series)[1], end["theta"], rtol=1e-12)
 
     def test_steps_are_those_of_a_run_with_fixed_steps(self):
-        for method in ("rk4", "midpoint"):
+        for method in ("rk4", "midpoint", "variational2"):
             rows = self.model.run(t_end=0.5, step=0.0625, every=0.0625, solver=method, error_estimate=False)
             x = self.f.start
             for k in range(8):

@@ -32,7 +32,18 @@ inline int jac_u(double, const double* x, const double*, const double*, const in
   return 0;
 }
 
-inline constexpr eom::discrete::Functions functions{rhs, jac, jac_p, jac_u};
+/// Momentum v with the rate v', and their derivatives: two rows.
+inline int momenta(double t, const double* x, const double* p, const double* u, const int* mode, double* momentum,
+                   double* rate) {
+  double dx[2];
+  rhs(t, x, p, u, mode, dx);
+  *momentum = dx[0];
+  *rate = dx[1];
+  return 0;
+}
+
+// The rows of momentum and rate are those of rhs, since the mass is 1.
+inline constexpr eom::discrete::Functions functions{rhs, jac, jac_p, jac_u, momenta, jac, jac_p, jac_u};
 inline constexpr eom::discrete::Sizes sizes{2, 2, 1};
 inline constexpr double x[] = {0.7, -1.1}, p[] = {4, 0.3}, u[] = {0.5};
 

@@ -17,7 +17,7 @@ using eom::discrete::Derivatives;
 using eom::discrete::Step;
 namespace model = discrete_model;
 
-/// The right-hand side with its Jacobian for eom::integrate.
+/// The right-hand side with its Jacobian and momenta for eom::integrate.
 struct WithNumbers {
   int operator()(double t, const double* x, double* dx) const {
     return model::rhs(t, x, model::p, model::u, nullptr, dx);
@@ -25,6 +25,13 @@ struct WithNumbers {
   int jacobian(double t, const double* x, double* dfdx, double* dfdt) const {
     return model::jac(t, x, model::p, model::u, nullptr, dfdx, dfdt);
   }
+  int momenta(double t, const double* x, double* momentum, double* rate) const {
+    return model::momenta(t, x, model::p, model::u, nullptr, momentum, rate);
+  }
+  int mass(double, const double*, double* M) const { return M[0] = 1, 0; }
+  int constrain(double, const double*, double*, double*, double*) const { return 0; }
+  std::size_t coordinates() const { return 1; }
+  std::size_t constraints() const { return 0; }
 };
 
 /// All arguments of a step in one array: x, p, u, t, h.
@@ -40,7 +47,7 @@ std::vector<double> end_of(const char* method, const std::vector<double>& a) {
 TEST_CASE("steps as functions: the first step has the bits of a run with fixed steps, later ones its digits") {
   for (const char* method : eom::discrete::method_names) {
     CAPTURE(std::string(method));
-    const bool implicit = std::string(method) == "midpoint";
+    const bool implicit = std::string(method) == "midpoint" || std::string(method) == "variational2";
     eom::Options options;
     options.fixed_step = 0.0625;
     problems::State start{model::x[0], model::x[1]};
@@ -97,8 +104,9 @@ TEST_CASE("steps as functions: all derivatives are those of central differences,
     }
 }
 
-TEST_CASE("steps as functions: rk4 has order 4 and midpoint order 2") {
-  for (const auto& [method, order] : {std::pair{"rk4", 4.0}, std::pair{"midpoint", 2.0}}) {
+TEST_CASE("steps as functions: rk4 has order 4, midpoint and variational2 have order 2") {
+  for (const auto& [method, order] :
+       {std::pair{"rk4", 4.0}, std::pair{"midpoint", 2.0}, std::pair{"variational2", 2.0}}) {
     const auto error = [&, name = method](double h) {
       Step coarse(name, model::sizes), fine("dop853", model::sizes);
       std::vector<double> a(2), b(2);
@@ -116,7 +124,9 @@ TEST_CASE("steps as functions: codes of the model, missing functions and unknown
   const eom::discrete::Functions bare{.rhs = model::rhs};
   const eom::discrete::Functions singular{
       .rhs = [](double, const double*, const double*, const double*, const int*, double*) { return 1; },
-      .jac = model::jac};
+      .jac = model::jac,
+      .momenta = [](double, const double*, const double*, const double*, const int*, double*, double*) { return 1; },
+      .momenta_jac = model::jac};
   for (const char* method : eom::discrete::method_names) {
     CAPTURE(std::string(method));
     Step step(method, model::sizes);
@@ -125,6 +135,7 @@ TEST_CASE("steps as functions: codes of the model, missing functions and unknown
   }
   CHECK(Step("rk4", model::sizes)(bare, at, x1.data()) == 0);
   CHECK(Step("midpoint", model::sizes)(bare, at, x1.data()) == eom::discrete::code_no_function);
+  CHECK(Step("variational2", model::sizes)(bare, at, x1.data()) == eom::discrete::code_no_function);
   // x' = x^2 + 1e6 has no midpoint step of this length.
   const eom::discrete::Functions explosive{.rhs = [](double, const double* x, const double*, const double*, const int*,
                                                      double* dx) { return dx[0] = x[0] * x[0] + 1e6, 0; },
@@ -134,7 +145,9 @@ TEST_CASE("steps as functions: codes of the model, missing functions and unknown
   CHECK(Step("midpoint", {1, 0, 0})(explosive, {0, 1, &zero}, x1.data()) == eom::code_no_convergence);
   CHECK_THROWS_WITH_AS(
       Step("euler", model::sizes),
-      "eom::discrete::Step: no method is called 'euler'; there are rk4, dopri5, tsit5, dop853, midpoint",
+      "eom::discrete::Step: no method is called 'euler'; there are rk4, dopri5, tsit5, dop853, midpoint, variational2",
       std::invalid_argument);
   CHECK_THROWS_AS(Step("rk4", {}), std::invalid_argument);
+  CHECK_THROWS_WITH_AS(Step("variational2", {3, 0, 0}), doctest::Contains("coordinates and rates"),
+                       std::invalid_argument);
 }

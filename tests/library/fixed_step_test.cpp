@@ -27,7 +27,8 @@ Definition damped_cart() {
   return d;
 }
 
-const std::vector<std::string> all_derivatives{"jac", "jac_p", "jac_u"};
+const std::vector<std::string> all_derivatives{"jac",         "jac_p",         "jac_u",        "momenta",
+                                               "momenta_jac", "momenta_jac_p", "momenta_jac_u"};
 
 }  // namespace
 
@@ -43,7 +44,7 @@ const std::vector<std::string> all_derivatives{"jac", "jac_p", "jac_u"};
 TEST_CASE("library: steps as functions follow a run with fixed steps") {
   const Model model = Model::from(damped_cart(), "cart");
   const CompiledModel f = model.compile({.functions = all_derivatives});
-  for (const char* method : {"rk4", "midpoint"}) {
+  for (const char* method : {"rk4", "midpoint", "variational2"}) {
     RunOptions options;
     options.solver = method;
     options.step = 0.125;
@@ -111,4 +112,25 @@ TEST_CASE("library: steps hold inputs that vary in the scene, and refuse what wa
   CHECK(step.derivatives({.t = 0.4, .x = x}, 0.1, varying.data(), {.x = J.data()}) == CompiledModel::not_compiled);
   CHECK_THROWS_WITH_AS(FixedStep(f, "euler"), doctest::Contains("choose one of rk4, dopri5"), Error);
   CHECK_THROWS_WITH_AS(FixedStep(f, "midpoint"), doctest::Contains("needs the function 'jac'"), Error);
+  CHECK_THROWS_WITH_AS(FixedStep(f, "variational2"), doctest::Contains("needs the function 'momenta'"), Error);
+}
+
+TEST_CASE("library: a variational step refuses what its momenta do not describe") {
+  const auto refused = [](Definition d) {
+    return FixedStep(Model::from(d, "cart").compile({.functions = all_derivatives}), "variational2");
+  };
+  CHECK_NOTHROW(refused(damped_cart()));
+  Definition with_state = damped_cart();
+  with_state.add("state", {{"name", "z"}, {"rate", "s_dot"}});
+  CHECK_THROWS_WITH_AS(refused(with_state), doctest::Contains("states beside coordinates and rates"), Error);
+  Definition pendulum("Pendulum");
+  pendulum.parameter("g", "9.81").set("coordinates", "x", Value::table({})).set("coordinates", "y", Value::table({}));
+  pendulum.set("energy", "kinetic", "(x_dot^2 + y_dot^2)/2").set("energy", "potential", "g*y");
+  pendulum.add("constraint", {{"name", "rod"}, {"holonomic", "x^2 + y^2 - 1"}});
+  pendulum.set("scene.default", "t", Value::list({0, 1}));
+  pendulum.set("scene.default", "initial", Value::table({{"x", 1}, {"y", 0}}));
+  CHECK_THROWS_WITH_AS(
+      FixedStep(Model::from(pendulum, "pendulum").compile({.form = "multipliers", .functions = all_derivatives}),
+                "variational2"),
+      doctest::Contains("constraints with multipliers"), Error);
 }

@@ -11,13 +11,22 @@ namespace eom::discrete {
 inline constexpr int code_no_function = -1;
 
 /// Functions of a model. Any type with members of these names that can be called in this way may take its place. jac,
-/// jac_p and jac_u are needed by derivatives only: a null pointer stands for none.
+/// jac_p and jac_u are needed by derivatives only, functions of momenta by variational2 only. A null pointer stands for
+/// none.
 struct Functions {
   int (*rhs)(double t, const double* x, const double* p, const double* u, const int* mode, double* dx) = nullptr;
   int (*jac)(double t, const double* x, const double* p, const double* u, const int* mode, double* dfdx,
              double* dfdt) = nullptr;
   int (*jac_p)(double t, const double* x, const double* p, const double* u, const int* mode, double* dfdp) = nullptr;
   int (*jac_u)(double t, const double* x, const double* p, const double* u, const int* mode, double* dfdu) = nullptr;
+  int (*momenta)(double t, const double* x, const double* p, const double* u, const int* mode, double* momenta,
+                 double* rates) = nullptr;
+  int (*momenta_jac)(double t, const double* x, const double* p, const double* u, const int* mode, double* dmdx,
+                     double* dmdt) = nullptr;
+  int (*momenta_jac_p)(double t, const double* x, const double* p, const double* u, const int* mode,
+                       double* dmdp) = nullptr;
+  int (*momenta_jac_u)(double t, const double* x, const double* p, const double* u, const int* mode,
+                       double* dmdu) = nullptr;
 };
 
 /// Lengths of x, p and u.
@@ -38,8 +47,8 @@ struct Arguments {
 /// Derivatives of the end x1 of a step. Null pointers are not computed. Arrays must not overlap with arguments.
 struct Derivatives {
   double* x = nullptr;  // dx1/dx: N x N
-  double* p = nullptr;  // dx1/dp: N x P; needs jac_p
-  double* u = nullptr;  // dx1/du: N x U; needs jac_u
+  double* p = nullptr;  // dx1/dp: N x P; needs jac_p, or momenta_jac_p
+  double* u = nullptr;  // dx1/du: N x U; needs jac_u, or momenta_jac_u
   double* t = nullptr;  // dx1/dt at fixed h: N
   double* h = nullptr;  // dx1/dh: N
 
@@ -72,6 +81,50 @@ int jac_u(const F& f, const Arguments& at, double t, const double* x, double* df
   if constexpr (requires { f.jac_u == nullptr; })
     if (f.jac_u == nullptr) return code_no_function;
   return f.jac_u(t, x, at.p, at.u, at.mode, dfdu);
+}
+
+// Types without members for momenta have none.
+
+/// m: momenta, then rates.
+template <class F>
+int momenta(const F& f, const Arguments& at, double t, const double* x, double* m, std::size_t n) {
+  if constexpr (!requires { f.momenta(t, x, at.p, at.u, at.mode, m, m); }) {
+    return code_no_function;
+  } else {
+    if constexpr (requires { f.momenta == nullptr; })
+      if (f.momenta == nullptr) return code_no_function;
+    return f.momenta(t, x, at.p, at.u, at.mode, m, m + n);
+  }
+}
+template <class F>
+int momenta_jac(const F& f, const Arguments& at, double t, const double* x, double* dmdx, double* dmdt) {
+  if constexpr (!requires { f.momenta_jac(t, x, at.p, at.u, at.mode, dmdx, dmdt); }) {
+    return code_no_function;
+  } else {
+    if constexpr (requires { f.momenta_jac == nullptr; })
+      if (f.momenta_jac == nullptr) return code_no_function;
+    return f.momenta_jac(t, x, at.p, at.u, at.mode, dmdx, dmdt);
+  }
+}
+template <class F>
+int momenta_jac_p(const F& f, const Arguments& at, double t, const double* x, double* dmdp) {
+  if constexpr (!requires { f.momenta_jac_p(t, x, at.p, at.u, at.mode, dmdp); }) {
+    return code_no_function;
+  } else {
+    if constexpr (requires { f.momenta_jac_p == nullptr; })
+      if (f.momenta_jac_p == nullptr) return code_no_function;
+    return f.momenta_jac_p(t, x, at.p, at.u, at.mode, dmdp);
+  }
+}
+template <class F>
+int momenta_jac_u(const F& f, const Arguments& at, double t, const double* x, double* dmdu) {
+  if constexpr (!requires { f.momenta_jac_u(t, x, at.p, at.u, at.mode, dmdu); }) {
+    return code_no_function;
+  } else {
+    if constexpr (requires { f.momenta_jac_u == nullptr; })
+      if (f.momenta_jac_u == nullptr) return code_no_function;
+    return f.momenta_jac_u(t, x, at.p, at.u, at.mode, dmdu);
+  }
 }
 
 }  // namespace detail

@@ -15,6 +15,7 @@
 #include "eom/discrete/explicit_rk.hpp"
 #include "eom/discrete/functions.hpp"
 #include "eom/discrete/midpoint.hpp"
+#include "eom/discrete/variational.hpp"
 #include "eom/explicit_rk/dop853.hpp"
 #include "eom/explicit_rk/dopri5.hpp"
 #include "eom/explicit_rk/rk4.hpp"
@@ -28,7 +29,8 @@ using Methods = std::variant<
     ExplicitRk<explicit_rk::Dopri5>,
     ExplicitRk<explicit_rk::Tsit5>,
     ExplicitRk<explicit_rk::Dop853>,
-    Midpoint>;
+    Midpoint,
+    Variational>;
 // clang-format on
 
 namespace detail {
@@ -48,7 +50,7 @@ inline constexpr std::array<const char*, std::variant_size_v<Methods>> method_na
 /// a time may use an object.
 class Step {
  public:
-  /// Throws std::invalid_argument for an unknown method, and if there are no states.
+  /// Throws std::invalid_argument for an unknown method, and for states that the method cannot have.
   Step(std::string_view method, const Sizes& sizes) : method_(make(method, sizes)) {}
 
   /// x1: N, may be x. Returns 0, a code of docs/abi.md, or code_no_convergence (outcome.hpp).
@@ -58,7 +60,7 @@ class Step {
   }
 
   /// The same, and the derivatives of x1. x1 must not be x. Returns code_no_function if a derivative needs a function
-  /// that the model lacks. For `midpoint` every call needs jac.
+  /// that the model lacks. For `midpoint` every call needs jac, for `variational2` momenta and momenta_jac.
   template <class F>
   int derivatives(const F& functions, const Arguments& at, double* x1, const Derivatives& to) {
     return std::visit([&](auto& method) { return method.derivatives(functions, at, x1, to); }, method_);
