@@ -3,10 +3,11 @@
 
     bench/stiff.py EOMGEN OTHER [--write] [--every] [MODEL ...]
 
-EOMGEN and OTHER are two programs. A scene of models/ counts as stiff if `auto` of EOMGEN takes radau5 in it. Grown models
-of bench/growth_models.py, FAMILY:N, count too. Both programs get the same file; if OTHER does not read it, then its own
-model of that name; without one the row is left out. Times are those of the integration (`seconds.integrate`), the
-shortest of RUNS, which other programs disturb least. Programs take turns. With --every all default scenes are measured, stiff or not.
+EOMGEN and OTHER are two programs. A scene of models/ counts as stiff if `auto` of EOMGEN takes radau5 in it. Grown
+models of bench/growth_models.py, FAMILY:N, count too. Both programs get the same file; if OTHER does not read it, then
+its own model of that name; without one the row is left out. Times are those of the integration (`seconds.integrate`),
+the shortest of RUNS, which other programs disturb least. Programs take turns. With --every all default scenes are
+measured, stiff or not.
 With --write the table in docs/benchmarks.md is replaced.
 """
 import json
