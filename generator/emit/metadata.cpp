@@ -51,12 +51,6 @@ std::vector<std::string> eliminated(const program::Program& program, const Emiss
   return result;
 }
 
-std::string joined(const std::vector<std::string>& list) {
-  std::string result;
-  for (const std::string& item : list) result += (result.empty() ? "" : ", ") + item;
-  return result;
-}
-
 void add_table(std::vector<std::string>& lines, const std::string& title, const std::vector<Quantity>& rows,
                bool values) {
   if (rows.empty()) return;
@@ -111,7 +105,7 @@ std::vector<std::string> banner_lines(const program::Program& program, const Emi
     }
   }
   const std::vector<std::string> gone = eliminated(program, context);
-  if (!gone.empty()) lines.push_back("eliminated  " + joined(gone));
+  if (!gone.empty()) lines.push_back(fmt::format("eliminated  {}", fmt::join(gone, ", ")));
   lines.push_back("");
   add_table(lines, "state x", states(program, context), false);
   add_table(lines, "parameters p", context.parameters, true);
@@ -368,6 +362,12 @@ std::string function_purpose(const std::string& function) {
 bool EmissionContext::has_resets() const {
   return !samples.empty() || std::any_of(events.begin(), events.end(),
                                          [](const EventDescription& event) { return !event.reset.set.empty(); });
+}
+
+std::vector<double> values_of(const std::vector<Quantity>& quantities) {
+  std::vector<double> values;
+  for (const Quantity& quantity : quantities) values.push_back(quantity.value);
+  return values;
 }
 
 void require_consistent(const program::Program& program, const EmissionContext& context) {

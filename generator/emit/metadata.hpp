@@ -25,6 +25,9 @@ std::string defaults_body(const program::Program& program, const EmissionContext
 /// The purpose of a function of the ABI, as a sentence.
 std::string function_purpose(const std::string& function);
 
+/// The default values of parameters or inputs.
+std::vector<double> values_of(const std::vector<Quantity>& quantities);
+
 /// Fills in a skeleton of templates/. Values are code and are not escaped.
 std::string render_template(const std::string& skeleton, const std::vector<std::pair<std::string, std::string>>& values,
                             const std::vector<std::vector<std::pair<std::string, std::string>>>& functions);

@@ -162,14 +162,13 @@ std::string mangled_id(const std::string& id) {
   return is_reserved(name) || is_one_of(name, runtime) ? name + "_" : name;
 }
 
-std::string script_name(const std::string& id) {
+std::string id_beside(const std::string& id, std::span<const std::string_view> taken) {
   const std::string name = mangled_id(id);
-  return is_one_of(name, javascript) ? name + "_" : name;
+  return is_one_of(name, taken) ? name + "_" : name;
 }
 
-std::string module_name(const std::string& id) {
-  const std::string name = mangled_id(id);
-  return is_one_of(name, python) ? name + "_" : name;
-}
+std::string script_name(const std::string& id) { return id_beside(id, javascript); }
+
+std::string module_name(const std::string& id) { return id_beside(id, python); }
 
 }  // namespace eomgen::emit

@@ -20,6 +20,9 @@ std::string identifier(const std::string& text);
 /// Reserved words of JavaScript, and names in pages and modules, that C and C++ do not reserve.
 std::span<const std::string_view> javascript_reserved_words();
 
+/// The id of a model as an identifier that is none of the `taken` words of a language.
+std::string id_beside(const std::string& id, std::span<const std::string_view> taken);
+
 /// Identifiers of one scope. `declare` returns the wanted name, with trailing underscores if it is taken. A name of
 /// more than `longest` characters is cut and numbered.
 class NameTable {

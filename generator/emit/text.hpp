@@ -21,6 +21,17 @@ std::string decimal(double value);
 
 using program::nearest_double;
 
+/// The text of each entry, with separators between them.
+template <class List, class Text>
+std::string joined(const List& list, Text&& text, const char* separator = ", ") {
+  std::string result;
+  for (const auto& entry : list) {
+    if (!result.empty()) result += separator;
+    result += text(entry);
+  }
+  return result;
+}
+
 /// Wraps at blanks to lines of at most `width` characters; continuation lines are indented by `indent`. A comment that
 /// begins with // stays one on every line.
 std::string wrapped(const std::string& line, const std::string& indent, std::size_t width = 110);

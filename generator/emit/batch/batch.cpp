@@ -111,9 +111,7 @@ class File {
     return "1";
   }
   std::string default_inputs() const {
-    std::string values;
-    for (const Quantity& input : context_.inputs) values += (values.empty() ? "" : ", ") + dialect_.value(input.value);
-    return values.empty() ? "0" : values;
+    return context_.inputs.empty() ? "0" : joined(values_of(context_.inputs), dialect_.value);
   }
 
   void add(const Function& function) {
@@ -239,11 +237,9 @@ class File {
     std::string body = fmt::format("  struct {}call call;\n", prefix_), numbers;
     const bool inputs = takes(list, Slot::input) && !context_.inputs.empty();
     if (inputs) {
-      std::string values;
-      for (const Quantity& input : context_.inputs)
-        values += (values.empty() ? "" : ", ") + dialect_.value(input.value);
-      body +=
-          wrapped(fmt::format("  static const {} standing[] = {{{}}};", dialect_.lane_type, values), "      ") + "\n";
+      body += wrapped(fmt::format("  static const {} standing[] = {{{}}};", dialect_.lane_type, default_inputs()),
+                      "      ") +
+              "\n";
     }
     const auto size = [&](std::size_t count) {
       if (count > 0) numbers += (numbers.empty() ? "" : " + ") + std::to_string(count);

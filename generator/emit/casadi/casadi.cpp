@@ -306,8 +306,7 @@ std::vector<EmittedFile> emit_casadi(const program::Program& program, const Emis
                          {"sparsities_out", sparsities(f.outputs)},
                          {"work", std::to_string(f.work)}});
   }
-  std::string inputs;
-  for (const Quantity& input : context.inputs) inputs += (inputs.empty() ? "" : ", ") + decimal(input.value);
+  std::string inputs = joined(values_of(context.inputs), decimal);
   if (!inputs.empty())
     inputs = wrapped(fmt::format("static const double {}_default_inputs[] = {{{}}};", name, inputs), "    ") + "\n\n";
   const std::string hint =

@@ -27,18 +27,15 @@ std::uint64_t checksum(const std::string& text, std::uint64_t sum = 0xcbf29ce484
 
 template <class List, class Text>
 std::string assignment(const char* member, const List& list, Text&& text) {
-  std::string entries;
-  for (const auto& entry : list) entries += (entries.empty() ? "" : ", ") + text(entry);
+  const std::string entries = joined(list, text);
   return entries.empty() ? "" : wrapped(fmt::format("  model.{} = {{{}}};", member, entries), "      ") + "\n";
 }
 
 std::string numbers(const EmissionContext& context, const FmuVariables& variables) {
-  const auto real = [](double value) { return decimal(value); };
   const auto whole = [](std::size_t value) { return fmt::format("{}", value); };
   const auto truth = [](bool value) { return std::string(value ? "true" : "false"); };
-  std::vector<double> inputs;
-  for (const Quantity& input : context.inputs) inputs.push_back(input.value);
-  return assignment("nominals", variables.nominals, real) + assignment("inputs", inputs, real) +
+  return assignment("nominals", variables.nominals, decimal) +
+         assignment("inputs", values_of(context.inputs), decimal) +
          assignment("calculated", variables.calculated, truth) + assignment("from_start", variables.from_start, truth) +
          assignment("outputs", variables.outputs, whole) +
          fmt::format("  model.event_indicators = {};", variables.event_indicators);

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "abi/functions.hpp"
+#include "emit/languages/language.hpp"
 #include "emit/metadata.hpp"
 #include "emit/names.hpp"
 #include "emit/self_test.hpp"
@@ -26,11 +26,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string script_number(double value) {
-  if (std::isnan(value)) return "NaN";
-  if (std::isinf(value)) return value > 0 ? "Infinity" : "-Infinity";
-  return decimal(value);
-}
+std::string script_number(double value) { return number_or(value, "NaN", "Infinity", "-Infinity"); }
 
 std::string rounded_number(double value) { return script_number(to_single(value)); }
 
@@ -38,13 +34,9 @@ std::string rounded_number(double value) { return script_number(to_single(value)
 /// bits equals one rounding to 24 bits.
 Dialect javascript_dialect(bool single) {
   Dialect dialect;
-  dialect.constant = [](const symbolic::Rational& value) { return script_number(nearest_double(value)); };
-  dialect.value = script_number;
-  dialect.pi = "3.141592653589793";
+  set_numbers<script_number>(dialect, "3.141592653589793");
   if (single) {
-    dialect.constant = [](const symbolic::Rational& value) { return rounded_number(nearest_double(value)); };
-    dialect.value = rounded_number;
-    dialect.pi = "3.1415927410125732";
+    set_numbers<rounded_number>(dialect, "3.1415927410125732");
     dialect.pivot_tolerance = single_dialect().pivot_tolerance;
     dialect.rounding_function = "fround";
   }
@@ -76,9 +68,7 @@ const char* array_of(const Dialect& dialect) {
 }
 
 std::string parameter_list(const std::string& function, const FunctionText& text, const ModelNames& names) {
-  std::string list;
-  for (const Argument& argument : arguments(function, text, names)) list += (list.empty() ? "" : ", ") + argument.name;
-  return list;
+  return joined(arguments(function, text, names), [](const Argument& argument) { return argument.name; });
 }
 
 bool reads_time(const program::Function& function) {
@@ -183,8 +173,7 @@ std::vector<EmittedFile> emit_javascript(const program::Program& program, const 
   }
   std::string start;
   if (context.start_functions) {
-    for (const program::Function* function : {&context.start_functions->values, &context.start_functions->rows}) {
-      if (function == &context.start_functions->rows && context.start_functions->row_count() == 0) continue;
+    for (const program::Function* function : context.start_functions->functions()) {
       const program::Function alone = without_packs(*function);
       start += "\n" + definition(alone, print_function(alone, names, context, dialect), names, dialect);
     }

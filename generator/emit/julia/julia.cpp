@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -15,10 +14,8 @@
 #include "emit/signature.hpp"
 #include "emit/single_precision.hpp"
 #include "emit/text.hpp"
-#include "error.hpp"
 #include "program/internal_functions.hpp"
 #include "skeletons/julia_model_jl.hpp"
-#include "symbolic/functions.hpp"
 
 namespace eomgen::emit {
 namespace {
@@ -37,11 +34,7 @@ constexpr std::string_view julia_words[] = {
     "STATES",    "PARAMETERS",   "INPUTS",     "OUTPUTS", "REACTIONS",   "START",   "VALUES",  "INFO",      "ABI",
     "DEFAULT_U", "DEFAULT_MODE", "code"};
 
-std::string julia_number(double value) {
-  if (std::isnan(value)) return "NaN";
-  if (std::isinf(value)) return value > 0 ? "Inf" : "-Inf";
-  return decimal(value);
-}
+std::string julia_number(double value) { return number_or(value, "NaN", "Inf", "-Inf"); }
 
 /// "0.1f0": a literal of single precision.
 std::string julia_single_number(double value) {
@@ -54,30 +47,14 @@ std::string julia_single_number(double value) {
   return text;
 }
 
-/// Roots and logarithms of negative numbers are not numbers, as in C; Julia's own are errors.
-const char* julia_function(symbolic::Op op) {
-  using symbolic::Op;
-  switch (op) {
-    case Op::sqrt: return "real_sqrt";
-    case Op::log: return "real_log";
-    case Op::pow: return "real_pow";
-    case Op::acos: return "real_acos";
-    case Op::asin: return "real_asin";
-    case Op::atan2: return "atan";
-    default: return symbolic::function_of(op).code;
-  }
-}
+const char* julia_function(symbolic::Op op) { return op == symbolic::Op::atan2 ? "atan" : real_function(op); }
 
 Language julia_language(bool single_precision) {
   Language language;
   Dialect& dialect = language.dialect;
-  dialect.constant = [](const symbolic::Rational& value) { return julia_number(nearest_double(value)); };
-  dialect.value = julia_number;
-  dialect.pi = "3.141592653589793";
+  set_numbers<julia_number>(dialect, "3.141592653589793");
   if (single_precision) {
-    dialect.constant = [](const symbolic::Rational& value) { return julia_single_number(nearest_double(value)); };
-    dialect.value = julia_single_number;
-    dialect.pi = "3.1415927f0";
+    set_numbers<julia_single_number>(dialect, "3.1415927f0");
     dialect.pivot_tolerance = single_dialect().pivot_tolerance;
     language.conversion = "Float32";
   }
@@ -107,17 +84,11 @@ Language julia_language(bool single_precision) {
 std::string julia_text(const std::string& text) { return quoted(text, "$"); }
 
 std::string julia_vector(const std::vector<double>& values, bool single_precision) {
-  std::string text;
-  for (const double value : values)
-    text += (text.empty() ? "" : ", ") + (single_precision ? julia_single_number(value) : julia_number(value));
-  return fmt::format("{}[{}]", single_precision ? "Float32" : "Float64", text);
+  return single_precision ? fmt::format("Float32[{}]", joined(values, julia_single_number))
+                          : fmt::format("Float64[{}]", joined(values, julia_number));
 }
 
-std::string julia_texts(const Json& names) {
-  std::string text;
-  for (const Json& name : names) text += (text.empty() ? "" : ", ") + julia_text(name.get<std::string>());
-  return "String[" + text + "]";
-}
+std::string julia_texts(const Json& names) { return "String[" + joined(names, julia_text) + "]"; }
 
 /// Results first, then x, p, w and t. Results that may be omitted, inputs and modes are keywords.
 std::string julia_definition(const program::Function& function, const ModelNames& names, const EmissionContext& context,
@@ -211,19 +182,12 @@ std::string julia_selftest(const program::Program& program, const EmissionContex
 
 }  // namespace
 
-std::string julia_name(const std::string& id) {
-  std::string name = mangled_id(id);
-  if (std::find(std::begin(julia_words), std::end(julia_words), name) != std::end(julia_words)) name += "_";
-  return name;
-}
+std::string julia_name(const std::string& id) { return id_beside(id, julia_words); }
 
 std::vector<EmittedFile> emit_julia(const program::Program& program, const EmissionContext& context) {
   require_consistent(program, context);
   require_plain(program, "julia");
-  // A run needs the start too: the command warns that the target has none.
-  if (context.start_functions && !context.run)
-    throw Error("emit", {}, "the target julia has no function start",
-                "leave start out of --with, or use the target c, javascript or rust");
+  require_no_start(context, "julia", ", or use the target c, javascript or rust");
   const std::string name = julia_name(context.id);
   const bool single_precision = context.single_error.has_value();
   const Language language = julia_language(single_precision);
@@ -231,15 +195,10 @@ std::vector<EmittedFile> emit_julia(const program::Program& program, const Emiss
   names.u = "u";  // keywords of every model: the reserved words keep them from its names
   names.mode = "mode";
   std::vector<std::vector<std::pair<std::string, std::string>>> functions;
-  std::string exports;
-  for (const program::Function& function : program.functions) {
+  for (const program::Function& function : program.functions)
     functions.push_back({{"definition", julia_definition(function, names, context, language)}});
-    exports += fmt::format("{}{}!", exports.empty() ? "" : ", ", function.name);
-  }
+  const auto exported = [](const program::Function& function) { return function.name + "!"; };
   const Json info = Json::parse(info_json(program, context));
-  std::vector<double> parameters, inputs;
-  for (const Quantity& parameter : context.parameters) parameters.push_back(parameter.value);
-  for (const Quantity& input : context.inputs) inputs.push_back(input.value);
   const std::vector<std::pair<std::string, std::string>> values = {
       {"banner", banner(program, context, "# ", "# ", "")},
       {"name", name},
@@ -250,10 +209,10 @@ std::vector<EmittedFile> emit_julia(const program::Program& program, const Emiss
       {"outputs", julia_texts(Json(program.outputs))},
       {"reactions", julia_texts(Json(program.reactions))},
       {"info", julia_text(info.dump(-1, ' ', true, Json::error_handler_t::replace))},
-      {"exports", exports},
+      {"exports", joined(program.functions, exported)},
       {"x", julia_vector(context.start, single_precision)},
-      {"p", julia_vector(parameters, single_precision)},
-      {"u", julia_vector(inputs, single_precision)},
+      {"p", julia_vector(values_of(context.parameters), single_precision)},
+      {"u", julia_vector(values_of(context.inputs), single_precision)},
       {"mode", julia_modes({}, program.mode_layout().size())},
       {"selftest", julia_selftest(program, context, single_precision)}};
   return {{name + ".jl", render_template(skeleton::julia_model_jl, values, functions)}};

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "emit/straight_line.hpp"
+#include "emit/text.hpp"
 
 namespace eomgen::emit {
 
@@ -36,6 +37,24 @@ FunctionText print_statements(const program::Function& function, const ModelName
 
 /// `text` as a literal between double quotes, in ASCII, with backslashes before quotes, backslashes and `also`.
 std::string quoted(const std::string& text, const std::string& also = "");
+
+/// Prints numbers of the code by `number`.
+template <std::string (*number)(double)>
+void set_numbers(Dialect& dialect, const char* pi) {
+  dialect.constant = [](const symbolic::Rational& value) { return number(nearest_double(value)); };
+  dialect.value = number;
+  dialect.pi = pi;
+}
+
+/// A number as decimal, or one of the three words for the others.
+std::string number_or(double value, const char* not_a_number, const char* infinity, const char* minus_infinity);
+
+/// Roots and logarithms of negative numbers are not numbers, as in C: functions of the skeletons in languages whose own
+/// are errors or complex.
+const char* real_function(symbolic::Op op);
+
+/// Throws Error if the function start is requested without a run.
+void require_no_start(const EmissionContext& context, const std::string& target, const std::string& remedy);
 
 /// Throws Error if the program has features that only targets in C have: Taylor series, second charts.
 void require_plain(const program::Program& program, const std::string& target);

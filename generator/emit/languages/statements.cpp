@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "emit/expressions.hpp"
 #include "emit/languages/language.hpp"
@@ -11,6 +12,7 @@
 #include "emit/value_names.hpp"
 #include "error.hpp"
 #include "program/internal_functions.hpp"
+#include "symbolic/functions.hpp"
 
 namespace eomgen::emit {
 namespace {
@@ -236,6 +238,30 @@ std::string quoted(const std::string& text, const std::string& also) {
     }
   }
   return result + "\"";
+}
+
+std::string number_or(double value, const char* not_a_number, const char* infinity, const char* minus_infinity) {
+  if (std::isfinite(value)) return decimal(value);
+  return std::isnan(value) ? not_a_number : value > 0 ? infinity : minus_infinity;
+}
+
+const char* real_function(symbolic::Op op) {
+  using symbolic::Op;
+  switch (op) {
+    case Op::sqrt: return "real_sqrt";
+    case Op::log: return "real_log";
+    case Op::pow: return "real_pow";
+    case Op::acos: return "real_acos";
+    case Op::asin: return "real_asin";
+    default: return symbolic::function_of(op).code;
+  }
+}
+
+void require_no_start(const EmissionContext& context, const std::string& target, const std::string& remedy) {
+  // A run needs the start too: the command warns that the target has none.
+  if (context.start_functions && !context.run)
+    throw Error("emit", {}, fmt::format("the target {} has no function start", target),
+                "leave start out of --with" + remedy);
 }
 
 void require_plain(const program::Program& program, const std::string& target) {

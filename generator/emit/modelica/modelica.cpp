@@ -57,9 +57,7 @@ const char* modelica_function(symbolic::Op op) {
 Language modelica_language() {
   Language language;
   Dialect& dialect = language.dialect;
-  dialect.constant = [](const symbolic::Rational& value) { return modelica_number(nearest_double(value)); };
-  dialect.value = modelica_number;
-  dialect.pi = "3.141592653589793";
+  set_numbers<modelica_number>(dialect, "3.141592653589793");
   dialect.abs_function = "abs";
   dialect.is_typed = false;
   dialect.conditional = [](const std::string& a, const std::string& b, const std::string& x, const std::string& y) {
@@ -204,12 +202,12 @@ void require_smooth(const program::Program& program, const EmissionContext& cont
 /// Parts of the model that the file does not have.
 std::string modelica_omissions(const program::Program& program, const EmissionContext& context) {
   std::string text;
-  std::string functions, events;
+  std::string functions;
   for (const program::Function& function : program.functions) {
     if (function.name == "rhs" || function.name == "prepare" || function.name == "rhs_prepared") continue;
     functions += (functions.empty() ? "" : ", ") + function.name;
   }
-  for (const EventDescription& event : context.events) events += (events.empty() ? "" : ", ") + event.name;
+  const std::string events = joined(context.events, [](const EventDescription& event) { return event.name; });
   const auto add = [&](const std::string& line) { text += "// " + comment_text(line) + "\n"; };
   if (!functions.empty()) add("Without the functions " + functions + ": a model has equations only.");
   if (!events.empty()) add("Without the events " + events + ", which record or end a run.");
@@ -220,18 +218,12 @@ std::string modelica_omissions(const program::Program& program, const EmissionCo
 
 }  // namespace
 
-std::string modelica_name(const std::string& id) {
-  std::string name = mangled_id(id);
-  if (std::find(std::begin(modelica_words), std::end(modelica_words), name) != std::end(modelica_words)) name += "_";
-  return name;
-}
+std::string modelica_name(const std::string& id) { return id_beside(id, modelica_words); }
 
 std::vector<EmittedFile> emit_modelica(const program::Program& program, const EmissionContext& context) {
   require_consistent(program, context);
   require_plain(program, "modelica");
-  if (context.start_functions && !context.run)
-    throw Error("emit", {}, "the target modelica has no function start",
-                "leave start out of --with: the start values of the default scene are attributes of the states");
+  require_no_start(context, "modelica", ": the start values of the default scene are attributes of the states");
   if (context.single_error)
     throw Error("emit", {}, "the target modelica has no single precision: Real of Modelica has 64 bits",
                 "leave --real float out");

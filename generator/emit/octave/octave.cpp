@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "abi/functions.hpp"
@@ -15,10 +13,8 @@
 #include "emit/signature.hpp"
 #include "emit/single_precision.hpp"
 #include "emit/text.hpp"
-#include "error.hpp"
 #include "program/internal_functions.hpp"
 #include "skeletons/octave_model_m.hpp"
-#include "symbolic/functions.hpp"
 
 namespace eomgen::emit {
 namespace {
@@ -97,36 +93,16 @@ constexpr std::string_view octave_words[] = {"arguments",
                                              "eval",
                                              "code"};
 
-std::string octave_number(double value) {
-  if (std::isnan(value)) return "NaN";
-  if (std::isinf(value)) return value > 0 ? "Inf" : "-Inf";
-  return decimal(value);
-}
+std::string octave_number(double value) { return number_or(value, "NaN", "Inf", "-Inf"); }
 
 std::string octave_single_number(double value) { return octave_number(to_single(value)); }
-
-/// Roots and logarithms of negative numbers are not numbers, as in C; Octave's own are complex.
-const char* octave_function(symbolic::Op op) {
-  using symbolic::Op;
-  switch (op) {
-    case Op::sqrt: return "real_sqrt";
-    case Op::log: return "real_log";
-    case Op::pow: return "real_pow";
-    case Op::acos: return "real_acos";
-    case Op::asin: return "real_asin";
-    default: return symbolic::function_of(op).code;
-  }
-}
 
 Language octave_language(bool single_precision) {
   Language language;
   Dialect& dialect = language.dialect;
-  dialect.constant = [](const symbolic::Rational& value) { return octave_number(nearest_double(value)); };
-  dialect.value = octave_number;
-  dialect.pi = "3.141592653589793";
+  set_numbers<octave_number>(dialect, "3.141592653589793");
   if (single_precision) {
-    dialect.constant = [](const symbolic::Rational& value) { return octave_single_number(nearest_double(value)); };
-    dialect.value = octave_single_number;
+    set_numbers<octave_single_number>(dialect, "3.141592653589793");
     dialect.pivot_tolerance = single_dialect().pivot_tolerance;
     language.conversion = "single";
   }
@@ -136,7 +112,7 @@ Language octave_language(bool single_precision) {
     return fmt::format("choose({} < {}, {}, {})", a, b, x, y);
   };
   dialect.element = [](const std::string& array, std::size_t index) { return fmt::format("{}({})", array, index + 1); };
-  dialect.function_name = octave_function;
+  dialect.function_name = real_function;
   language.comment = "% ";
   language.declaration = [](const std::string& name, const std::string& value) {
     return fmt::format("{} = {};", name, value);
@@ -162,17 +138,10 @@ std::string octave_text(const std::string& text) {
 }
 
 std::string octave_column(const std::vector<double>& values) {
-  if (values.empty()) return "zeros(0, 1)";
-  std::string text;
-  for (const double value : values) text += (text.empty() ? "" : "; ") + octave_number(value);
-  return "[" + text + "]";
+  return values.empty() ? "zeros(0, 1)" : "[" + joined(values, octave_number, "; ") + "]";
 }
 
-std::string octave_cells(const Json& names) {
-  std::string text;
-  for (const Json& name : names) text += (text.empty() ? "" : ", ") + octave_text(name.get<std::string>());
-  return "{" + text + "}";
-}
+std::string octave_cells(const Json& names) { return "{" + joined(names, octave_text) + "}"; }
 
 /// Long text as a row of literals over several lines.
 std::string octave_long_text(const std::string& text) {
@@ -275,8 +244,7 @@ std::string octave_selftest(const program::Program& program, const EmissionConte
 }  // namespace
 
 std::string octave_name(const std::string& id) {
-  std::string name = mangled_id(id);
-  if (std::find(std::begin(octave_words), std::end(octave_words), name) != std::end(octave_words)) name += "_";
+  const std::string name = id_beside(id, octave_words);
   if (name.size() <= longest_octave_name) return name;
   std::uint64_t hash = 14695981039346656037u;  // FNV-1a
   for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
@@ -286,10 +254,7 @@ std::string octave_name(const std::string& id) {
 std::vector<EmittedFile> emit_octave(const program::Program& program, const EmissionContext& context) {
   require_consistent(program, context);
   require_plain(program, "octave");
-  // A run needs the start too: the command warns that the target has none.
-  if (context.start_functions && !context.run)
-    throw Error("emit", {}, "the target octave has no function start",
-                "leave start out of --with, or use the target c, javascript or rust");
+  require_no_start(context, "octave", ", or use the target c, javascript or rust");
   const std::string name = octave_name(context.id);
   const bool single_precision = context.single_error.has_value();
   const Language language = octave_language(single_precision);
@@ -301,9 +266,6 @@ std::vector<EmittedFile> emit_octave(const program::Program& program, const Emis
     handles += fmt::format("  model.{0} = @{0};\n", function.name);
   }
   const Json info = Json::parse(info_json(program, context));
-  std::vector<double> parameters, inputs;
-  for (const Quantity& parameter : context.parameters) parameters.push_back(parameter.value);
-  for (const Quantity& input : context.inputs) inputs.push_back(input.value);
   const auto rounded = [&](std::vector<double> list) {
     for (double& value : list) value = single_precision ? to_single(value) : value;
     return octave_column(list);
@@ -320,8 +282,8 @@ std::vector<EmittedFile> emit_octave(const program::Program& program, const Emis
       {"info", octave_long_text(info.dump(-1, ' ', true, Json::error_handler_t::replace))},
       {"handles", handles},
       {"x", rounded(context.start)},
-      {"p", rounded(parameters)},
-      {"u", rounded(inputs)},
+      {"p", rounded(values_of(context.parameters))},
+      {"u", rounded(values_of(context.inputs))},
       {"selftest", octave_selftest(program, context)}};
   return {{name + ".m", render_template(skeleton::octave_model_m, values, functions)}};
 }

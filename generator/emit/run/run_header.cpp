@@ -115,9 +115,7 @@ std::string text(const eom::hybrid::ExchangedChart& c) {
 }
 template <class Entry>
 std::string text(const std::vector<Entry>& list) {
-  std::string result;
-  for (const auto& entry : list) result += (result.empty() ? "" : ", ") + text(static_cast<const Entry&>(entry));
-  return "{" + result + "}";
+  return "{" + joined(list, [](const Entry& entry) { return text(entry); }) + "}";
 }
 
 /// Assignment statements for nonempty values.
@@ -134,8 +132,8 @@ class Statements {
     if constexpr (std::is_arithmetic_v<Entry>) {
       line(wrapped(fmt::format("{}.{} = {};", of_, member, text(entries)), "      "));
     } else {  // names may contain blanks, where lines must not break
-      std::string all;
-      for (const Entry& entry : entries) all += (all.empty() ? "" : ",\n      ") + in_lines(entry);
+      const std::string all = joined(
+          entries, [this](const Entry& entry) { return in_lines(entry); }, ",\n      ");
       line(fmt::format("{}.{} = {{{}}};", of_, member, all));
     }
   }

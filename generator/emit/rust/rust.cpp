@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "abi/functions.hpp"
@@ -105,11 +103,7 @@ constexpr std::string_view rust_words[] = {"abstract",
                                            "selftest",
                                            "defaults"};
 
-std::string rust_number(double value) {
-  if (std::isnan(value)) return "Real::NAN";
-  if (std::isinf(value)) return value > 0 ? "Real::INFINITY" : "Real::NEG_INFINITY";
-  return decimal(value);
-}
+std::string rust_number(double value) { return number_or(value, "Real::NAN", "Real::INFINITY", "Real::NEG_INFINITY"); }
 
 std::string single_number(double value) { return rust_number(to_single(value)); }
 
@@ -117,13 +111,9 @@ Language rust_language(bool single) {
   Language language;
   Dialect& dialect = language.dialect;
   dialect.real = "Real";
-  dialect.constant = [](const symbolic::Rational& value) { return rust_number(nearest_double(value)); };
-  dialect.value = rust_number;
-  dialect.pi = "3.141592653589793";
+  set_numbers<rust_number>(dialect, "3.141592653589793");
   if (single) {
-    dialect.constant = [](const symbolic::Rational& value) { return single_number(nearest_double(value)); };
-    dialect.value = single_number;
-    dialect.pi = "3.1415927";
+    set_numbers<single_number>(dialect, "3.1415927");
     dialect.pivot_tolerance = single_dialect().pivot_tolerance;
   }
   dialect.abs_function = "abs";
@@ -233,21 +223,14 @@ std::string rust_definition(const program::Function& function, const ModelNames&
 }
 
 std::string rust_list(const std::vector<double>& values, const Dialect& dialect) {
-  std::string text;
-  for (const double value : values) text += (text.empty() ? "" : ", ") + dialect.value(value);
-  return "[" + text + "]";
+  return "[" + joined(values, dialect.value) + "]";
 }
 
 /// Reference values in full, also those that single precision rounds to 0.
-std::string rust_references(const std::vector<double>& values) {
-  std::string text;
-  for (const double value : values) text += (text.empty() ? "" : ", ") + rust_number(value);
-  return "[" + text + "]";
-}
+std::string rust_references(const std::vector<double>& values) { return "[" + joined(values, rust_number) + "]"; }
 
 std::string names_constant(const char* constant, const char* size, const Json& names) {
-  std::string list;
-  for (const Json& name : names) list += (list.empty() ? "" : ", ") + quoted(name.get<std::string>());
+  const std::string list = joined(names, [](const std::string& name) { return quoted(name); });
   return fmt::format("pub const {}: [&str; {}] = [{}];\n", constant, size, list);
 }
 
@@ -269,9 +252,8 @@ std::string rust_constants(const program::Program& program, const EmissionContex
   text += names_constant("INPUT_NAMES", "INPUTS", info.at("inputs"));
   text += names_constant("OUTPUT_NAMES", "OUTPUT_COUNT", Json(program.outputs));
   text += names_constant("REACTION_NAMES", "REACTION_COUNT", Json(program.reactions));
-  std::vector<double> inputs;
-  for (const Quantity& input : context.inputs) inputs.push_back(input.value);
-  return text + fmt::format("pub const DEFAULT_INPUTS: [Real; INPUTS] = {};\n", rust_list(inputs, dialect));
+  return text +
+         fmt::format("pub const DEFAULT_INPUTS: [Real; INPUTS] = {};\n", rust_list(values_of(context.inputs), dialect));
 }
 
 std::string rust_vectors(const program::Program& program, const EmissionContext& context, const Dialect& dialect) {
@@ -349,10 +331,7 @@ std::string rust_selftest(const program::Program& program, const EmissionContext
 
 }  // namespace
 
-std::string rust_name(const std::string& id) {
-  const std::string name = mangled_id(id);
-  return std::find(std::begin(rust_words), std::end(rust_words), name) != std::end(rust_words) ? name + "_" : name;
-}
+std::string rust_name(const std::string& id) { return id_beside(id, rust_words); }
 
 std::vector<EmittedFile> emit_rust(const program::Program& program, const EmissionContext& context) {
   require_consistent(program, context);
@@ -367,10 +346,8 @@ std::vector<EmittedFile> emit_rust(const program::Program& program, const Emissi
                          {"definition", rust_definition(function, names, context, language)}});
   std::string start;
   if (context.start_functions) {
-    for (const program::Function* function : {&context.start_functions->values, &context.start_functions->rows}) {
-      if (function == &context.start_functions->rows && context.start_functions->row_count() == 0) continue;
+    for (const program::Function* function : context.start_functions->functions())
       start += "\n" + rust_definition(*function, names, context, language);
-    }
     start += rust_start(program, context);
   }
   const Json parsed = Json::parse(info);

@@ -229,6 +229,11 @@ std::vector<std::pair<std::string, std::string>> start_numbers(const StartDescri
   return values;
 }
 
+std::vector<const program::Function*> StartDescription::functions() const {
+  if (row_count() == 0) return {&values};
+  return {&values, &rows};
+}
+
 std::string start_text(const StartDescription& start, const EmissionContext& context, const program::Program& program,
                        const StartLanguage& language) {
   return Text(start, context, program, language)();

@@ -42,6 +42,8 @@ struct StartDescription {
   std::vector<int> rolls;      // per row: the contact that rolls
   std::vector<int> contacts;   // per contact: the row that is 0 while it is closed
   std::size_t row_count() const { return target.size(); }
+  /// `values`, and `rows` if there are any.
+  std::vector<const program::Function*> functions() const;
 };
 
 /// The largest product of rows and coordinates: the function keeps its matrices on the stack.
