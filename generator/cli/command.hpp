@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A command of the program. Each has one file in commands/ and one line in registry.cpp.
+// A command of the program. Each has one file in commands/ and one line in commands/registry.inc.
 #pragma once
 
 #include <functional>

@@ -33,6 +33,12 @@ std::string lowered(std::string text) {
   return text;
 }
 
+void remove_signs_of_zeros(Json& value) {
+  if (value.is_number_float()) value = unsigned_zero(value.get<double>());
+  if (!value.is_structured()) return;
+  for (Json& element : value) remove_signs_of_zeros(element);
+}
+
 struct Identity {
   bool there = false;
   dev_t device = 0;
@@ -130,7 +136,11 @@ eom::AtomicFile open(const std::string& path) {
 
 }  // namespace
 
-void print_document(const Json& document) { fmt::print("{}\n", document.dump(2, false)); }
+void print_document(const Json& document) {
+  Json shown = document;
+  remove_signs_of_zeros(shown);
+  fmt::print("{}\n", serialised(shown, 2));
+}
 
 void print_message(std::string_view text) noexcept {
   std::fwrite(text.data(), 1, text.size(), stderr);

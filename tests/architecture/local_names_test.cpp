@@ -151,7 +151,7 @@ TEST_CASE("local names: two files of a folder declare no name twice") {
       std::map<std::string, std::vector<std::pair<LocalName, std::string>>> before;
       for (const fs::path& file : architecture::files_below(folder.path(), {".cpp"})) {
         const std::string here = fs::relative(file, root).generic_string();
-        if (here.starts_with("generator/cli/commands/")) continue;  // not united
+        if (here.starts_with("generator/cli/commands/")) continue;  // each is a namespace of its own
         for (const LocalName& name : local_names(file)) {
           ++seen;
           for (const auto& [other, there] : before[name.name]) {

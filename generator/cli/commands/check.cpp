@@ -7,7 +7,7 @@
 #include "cli/output.hpp"
 #include "cli/stage_monitor.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::cli::check_command {
 namespace {
 
 std::string text(const Json& value) { return value.get<std::string>(); }
@@ -123,7 +123,7 @@ void print_readable(const Json& found) {
 
 }  // namespace
 
-Execute declare_check(Arguments& app) {
+Execute declare(Arguments& app) {
   auto name = std::make_shared<std::string>();
   app.add_option("MODEL", *name, "a model file, or the name of one in models/").required();
   return [name](const CommonOptions& common) {
@@ -142,4 +142,4 @@ Execute declare_check(Arguments& app) {
   };
 }
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::cli::check_command

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The function `declare` of each command, in a namespace of its own.
 #pragma once
 
 #include "cli/command.hpp"
@@ -7,24 +8,11 @@ namespace eomgen::cli {
 
 using Execute = std::function<int(const CommonOptions&)>;
 
-Execute declare_new(Arguments& app);
-Execute declare_list(Arguments& app);
-Execute declare_import(Arguments& app);
-Execute declare_check(Arguments& app);
-Execute declare_derive(Arguments& app);
-Execute declare_verify(Arguments& app);
-Execute declare_emit(Arguments& app);
-Execute declare_run(Arguments& app);
-Execute declare_equilibria(Arguments& app);
-Execute declare_linearize(Arguments& app);
-Execute declare_inverse(Arguments& app);
-Execute declare_sweep(Arguments& app);
-Execute declare_merge(Arguments& app);
-Execute declare_report(Arguments& app);
-Execute declare_bench(Arguments& app);
-Execute declare_stress(Arguments& app);
-Execute declare_docs(Arguments& app);
-Execute declare_manual(Arguments& app);
-Execute declare_completion(Arguments& app);
+#define COMMAND(name, summary)       \
+  namespace name##_command {         \
+    Execute declare(Arguments& app); \
+  }
+#include "cli/commands/registry.inc"
+#undef COMMAND
 
 }  // namespace eomgen::cli

@@ -8,7 +8,7 @@
 #include "cli/usage.hpp"
 #include "model/names.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::cli::completion_command {
 namespace {
 
 std::string joined(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, " ")); }
@@ -149,10 +149,10 @@ int execute(const std::string& name, const CommonOptions& common) {
 
 }  // namespace
 
-Execute declare_completion(Arguments& app) {
+Execute declare(Arguments& app) {
   auto name = std::make_shared<std::string>();
   app.add_option("SHELL", *name, "bash, zsh or fish").required();
   return [name](const CommonOptions& common) { return execute(*name, common); };
 }
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::cli::completion_command

@@ -13,7 +13,7 @@
 #include "cli/usage.hpp"
 #include "print/article.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::cli::derive_command {
 namespace {
 
 struct Options {
@@ -183,7 +183,7 @@ int execute(const Options& options, const CommonOptions& common) {
 
 }  // namespace
 
-Execute declare_derive(Arguments& app) {
+Execute declare(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
   add_approach(app, options->approach);
@@ -199,4 +199,4 @@ Execute declare_derive(Arguments& app) {
   return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::cli::derive_command

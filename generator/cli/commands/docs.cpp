@@ -10,7 +10,7 @@
 #include "error.hpp"
 #include "model/names.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::cli::docs_command {
 namespace {
 
 struct Options {
@@ -52,11 +52,11 @@ int execute(const Options& options, const CommonOptions& common) {
 
 }  // namespace
 
-Execute declare_docs(Arguments& app) {
+Execute declare(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("TOPIC", options->topic,
                  "a page, such as abi, or the heading of a section; without it the list of pages");
   return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::cli::docs_command

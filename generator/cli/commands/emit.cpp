@@ -16,7 +16,7 @@
 #include "pipeline/emission.hpp"
 #include "print/article.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::cli::emit_command {
 namespace {
 
 struct Options {
@@ -158,7 +158,7 @@ int execute(const Options& options, const CommonOptions& common) {
 
 }  // namespace
 
-Execute declare_emit(Arguments& app) {
+Execute declare(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
   app.add_output_path("-o,--out", options->folder, "the folder for the sources; it is made if need be");
@@ -187,4 +187,4 @@ Execute declare_emit(Arguments& app) {
   return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::cli::emit_command

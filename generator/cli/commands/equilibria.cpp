@@ -20,7 +20,7 @@
 #include "pipeline/limits.hpp"
 #include "work.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::cli::equilibria_command {
 namespace {
 
 struct Options : SceneOptions {
@@ -251,7 +251,7 @@ int execute(const Options& options, const CommonOptions& common) {
 
 }  // namespace
 
-Execute declare_equilibria(Arguments& app) {
+Execute declare(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
   app.add_option("--scene", options->scene, "a scene: its parameters, and the start whose momenta are held")
@@ -268,4 +268,4 @@ Execute declare_equilibria(Arguments& app) {
   return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::cli::equilibria_command

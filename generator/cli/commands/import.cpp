@@ -9,7 +9,7 @@
 #include "import/option_words.hpp"
 #include "model/names.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::cli::import_command {
 namespace {
 
 struct Options {
@@ -82,9 +82,9 @@ int execute(const Options& options, const CommonOptions& common) {
   return 0;
 }
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::cli::import_command
 
-Execute declare_import(Arguments& app) {
+Execute declare(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("FILE", options->file, "a robot file: URDF or MJCF").required();
   app.add_output_path("-o,--out", options->out, "the model, F.toml; - or without it standard output");
@@ -101,4 +101,4 @@ Execute declare_import(Arguments& app) {
   return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::cli::import_command

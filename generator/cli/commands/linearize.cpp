@@ -14,7 +14,7 @@
 #include "cli/shared_options.hpp"
 #include "cli/usage.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::cli::linearize_command {
 namespace {
 
 struct Options : SceneOptions {
@@ -203,7 +203,7 @@ int execute(const Options& options, const CommonOptions& common) {
 
 }  // namespace
 
-Execute declare_linearize(Arguments& app) {
+Execute declare(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
   add_scene(app, *options);
@@ -214,4 +214,4 @@ Execute declare_linearize(Arguments& app) {
   return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::cli::linearize_command

@@ -15,7 +15,7 @@
 #include "rotations/rotation.hpp"
 #include "run/eligibility.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::cli::list_command {
 namespace {
 
 Json registries() {
@@ -109,6 +109,6 @@ int execute(const CommonOptions& common) {
 
 }  // namespace
 
-Execute declare_list(Arguments&) { return execute; }
+Execute declare(Arguments&) { return execute; }
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::cli::list_command

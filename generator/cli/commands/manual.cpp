@@ -8,7 +8,7 @@
 #include "cli/usage.hpp"
 #include "model/names.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::cli::manual_command {
 namespace {
 
 struct Options {
@@ -140,11 +140,11 @@ int execute(const Options& options, const CommonOptions& common) {
 
 }  // namespace
 
-Execute declare_manual(Arguments& app) {
+Execute declare(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("COMMAND", options->command, "a command; without it the page of the whole program");
   app.add_output_path("-o,--out", options->folder, "a folder for the pages, all of them without COMMAND");
   return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::cli::manual_command

@@ -22,7 +22,7 @@
 #include "emit/write_files.hpp"
 #include "model/names.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::cli::merge_command {
 namespace {
 
 struct Options {
@@ -187,7 +187,7 @@ int execute(const Options& options, const CommonOptions& common) {
 
 }  // namespace
 
-Execute declare_merge(Arguments& app) {
+Execute declare(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("TABLES", options->tables, "what sweep --shard wrote, every shard of one sweep").required();
   app.add_output_path("-o,--out", options->out, "the whole table: F.csv, or F.npz for arrays of columns").required();
@@ -195,4 +195,4 @@ Execute declare_merge(Arguments& app) {
   return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::cli::merge_command

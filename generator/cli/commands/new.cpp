@@ -8,7 +8,7 @@
 #include "cli/output.hpp"
 #include "cli/starter_text.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::cli::new_command {
 namespace {
 
 struct Options {
@@ -45,10 +45,10 @@ int execute(const Options& options, const CommonOptions& common) {
 
 }  // namespace
 
-Execute declare_new(Arguments& app) {
+Execute declare(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("NAME", options->name, "name of the model; NAME.toml is written here").required();
   return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::cli::new_command

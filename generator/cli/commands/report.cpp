@@ -23,7 +23,7 @@
 #include "pipeline/simulate.hpp"
 #include "print/render.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::cli::report_command {
 namespace {
 
 struct Options : SceneOptions {
@@ -41,7 +41,7 @@ double rows_of_a_page(const model::Model& model) {
 }
 
 std::string text(const Json& value) {
-  return value.is_null() ? "" : value.is_string() ? value.get<std::string>() : value.dump();
+  return value.is_null() ? "" : value.is_string() ? value.get<std::string>() : serialised(value);
 }
 
 // The animation comes first. The script adds the controls, which need it.
@@ -279,7 +279,7 @@ int execute(const Options& options, const CommonOptions& common) {
   for (bool coarser = *request.rows < most_rows;; coarser = true) {
     Json moving = recorded.json(simulation, *drawing, *forces, live, outputs, curves);
     if (!moving.is_null()) moving["kept"] = kept;
-    motion = moving.is_null() ? "" : moving.dump();
+    motion = moving.is_null() ? "" : serialised(moving);
     plots = Html();
     add_run(plots, simulation, run, recorded, curves, coarser);
     taken = render_page({title, plots.text() + rest.text(), motion, live.script, live.name, surfaces.script,
@@ -308,7 +308,7 @@ int execute(const Options& options, const CommonOptions& common) {
 
 }  // namespace
 
-Execute declare_report(Arguments& app) {
+Execute declare(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
   app.add_output_path("-o,--out", options->out, "the page; without it report.html in this folder");
@@ -319,4 +319,4 @@ Execute declare_report(Arguments& app) {
   return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::cli::report_command

@@ -25,7 +25,7 @@
 #include "pipeline/row_count.hpp"
 #include "pipeline/simulate.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::cli::run_command {
 namespace {
 
 struct Options : SceneOptions {
@@ -239,7 +239,7 @@ int execute(const Options& options, const CommonOptions& common) {
 
 }  // namespace
 
-Execute declare_run(Arguments& app) {
+Execute declare(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
   add_scene(app, *options);
@@ -275,4 +275,4 @@ Execute declare_run(Arguments& app) {
   return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::cli::run_command

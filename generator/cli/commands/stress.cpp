@@ -17,7 +17,7 @@
 #include "cli/usage.hpp"
 #include "pipeline/limits.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::cli::stress_command {
 namespace {
 
 using stress::Verdict;
@@ -176,7 +176,7 @@ int execute(const Options& options, const CommonOptions& common) {
 
 }  // namespace
 
-Execute declare_stress(Arguments& app) {
+Execute declare(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
   add_scene(app, *options);
@@ -194,4 +194,4 @@ Execute declare_stress(Arguments& app) {
   return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::cli::stress_command

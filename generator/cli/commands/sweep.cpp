@@ -12,7 +12,7 @@
 #include "cli/output.hpp"
 #include "cli/usage.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::cli::sweep_command {
 namespace {
 
 Json document(const SweepOptions& options, const model::Model& model, const Sweep& sweep) {
@@ -50,7 +50,7 @@ int execute(const SweepOptions& options, const CommonOptions& common) {
 
 }  // namespace
 
-Execute declare_sweep(Arguments& app) {
+Execute declare(Arguments& app) {
   auto options = std::make_shared<SweepOptions>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
   app.add_list("--grid", options->grid,
@@ -85,4 +85,4 @@ Execute declare_sweep(Arguments& app) {
   return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::cli::sweep_command

@@ -11,7 +11,7 @@
 #include "pipeline/limits.hpp"
 #include "pipeline/verification.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::cli::verify_command {
 namespace {
 
 struct Options {
@@ -82,7 +82,7 @@ int execute(const Options& options, const CommonOptions& common) {
 
 }  // namespace
 
-Execute declare_verify(Arguments& app) {
+Execute declare(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
   app.add_option("--digits", options->digits, "decimal digits of the arithmetic")
@@ -95,4 +95,4 @@ Execute declare_verify(Arguments& app) {
   return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::cli::verify_command

@@ -73,7 +73,7 @@ class Document {
   }
 
   std::string file() const {
-    std::string text = json_.dump();
+    std::string text = serialised(json_);
     text.resize((text.size() + 3) / 4 * 4, ' ');
     std::string result;
     append_bytes(result, magic);
