@@ -4,10 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <stdexcept>
 #include <system_error>
+
+#include "emit/fmu/zip.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -23,23 +24,17 @@ void put(std::string& text, T value) {
   for (std::size_t i = 0; i < sizeof(T); ++i) text += static_cast<char>(value >> (8 * i) & 0xff);
 }
 
-constexpr std::array<std::uint32_t, 256> remainders = [] {
-  std::array<std::uint32_t, 256> table{};
-  for (std::uint32_t i = 0; i < 256; ++i) {
-    std::uint32_t r = i;
-    for (int bit = 0; bit < 8; ++bit) r = (r & 1) != 0 ? 0xedb88320 ^ r >> 1 : r >> 1;
-    table[i] = r;
-  }
-  return table;
-}();
+/// The part that the header of a member and the directory share.
+std::string described(const std::string& name, std::uint32_t checksum) {
+  std::string text;
+  for (const std::uint16_t value : {version, utf8_names, std::uint16_t{0}, std::uint16_t{0}, first_day})
+    put(text, value);
+  for (const std::uint32_t value : {checksum, elsewhere, elsewhere}) put(text, value);
+  put(text, static_cast<std::uint16_t>(name.size()));
+  return text;
+}
 
 }  // namespace
-
-std::uint32_t checksum(std::uint32_t before, std::string_view bytes) {
-  std::uint32_t r = ~before;
-  for (const char c : bytes) r = remainders[(r ^ static_cast<unsigned char>(c)) & 0xff] ^ r >> 8;
-  return ~r;
-}
 
 Archive::Archive(const std::string& path, std::vector<Member> members) : file_(path), members_(std::move(members)) {
   if (file_.partial().empty()) throw std::invalid_argument("an archive is written at many places, and this is no file");
@@ -53,12 +48,7 @@ Archive::Archive(const std::string& path, std::vector<Member> members) : file_(p
 std::string Archive::local_header(std::size_t i) const {
   std::string text;
   put<std::uint32_t>(text, 0x04034b50);
-  for (const std::uint16_t value : {version, utf8_names, std::uint16_t{0}, std::uint16_t{0}, first_day})
-    put(text, value);
-  put(text, places_[i].checksum);
-  put(text, elsewhere);
-  put(text, elsewhere);
-  put(text, static_cast<std::uint16_t>(members_[i].name.size()));
+  text += described(members_[i].name, places_[i].checksum);
   put<std::uint16_t>(text, 20);
   text += members_[i].name;
   put<std::uint16_t>(text, 1);
@@ -72,12 +62,7 @@ std::string Archive::central_header(std::size_t i) const {
   std::string text;
   put<std::uint32_t>(text, 0x02014b50);
   put<std::uint16_t>(text, 3 << 8 | version);  // file attributes of Unix
-  for (const std::uint16_t value : {version, utf8_names, std::uint16_t{0}, std::uint16_t{0}, first_day})
-    put(text, value);
-  put(text, places_[i].checksum);
-  put(text, elsewhere);
-  put(text, elsewhere);
-  put(text, static_cast<std::uint16_t>(members_[i].name.size()));
+  text += described(members_[i].name, places_[i].checksum);
   put<std::uint16_t>(text, 28);
   for (int unused = 0; unused < 3; ++unused) put<std::uint16_t>(text, 0);
   put<std::uint32_t>(text, 0100644U << 16);
@@ -107,7 +92,7 @@ void Archive::write(std::size_t member, std::string_view bytes) {
     throw std::logic_error("more bytes than a member of the archive has");
   write_at(place.next, bytes);
   place.next += bytes.size();
-  place.checksum = checksum(place.checksum, bytes);
+  place.checksum = emit::crc32(bytes, place.checksum);
 }
 
 void Archive::finish() {

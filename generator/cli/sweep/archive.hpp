@@ -41,7 +41,4 @@ class Archive {
   std::uint64_t end_ = 0;  // of the members
 };
 
-/// Updates a CRC-32 (ISO 3309) with further bytes; the initial value is 0.
-std::uint32_t checksum(std::uint32_t before, std::string_view bytes);
-
 }  // namespace eomgen::cli

@@ -3,14 +3,14 @@
 
 #include <fmt/format.h>
 
-#include "cli/sweep/archive.hpp"
+#include "emit/fmu/zip.hpp"
 
 namespace eomgen::cli {
 
-RowChecksum::RowChecksum(std::string_view header) : of_columns_(checksum(0, header)) {}
+RowChecksum::RowChecksum(std::string_view header) : of_columns_(emit::crc32(header)) {}
 
 std::string RowChecksum::append_to(std::string_view row) const {
-  return fmt::format("{},{:08x}", row, checksum(of_columns_, row));
+  return fmt::format("{},{:08x}", row, emit::crc32(row, of_columns_));
 }
 
 bool RowChecksum::holds(std::string_view line) const {

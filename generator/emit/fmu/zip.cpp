@@ -40,7 +40,7 @@ std::string description(const EmittedFile& file) {
 
 }  // namespace
 
-std::uint32_t crc32(std::string_view bytes) {
+std::uint32_t crc32(std::string_view bytes, std::uint32_t before) {
   static const std::array<std::uint32_t, 256> table = [] {
     std::array<std::uint32_t, 256> result{};
     for (std::uint32_t i = 0; i < result.size(); ++i) {
@@ -50,9 +50,9 @@ std::uint32_t crc32(std::string_view bytes) {
     }
     return result;
   }();
-  std::uint32_t sum = 0xffffffffU;
+  std::uint32_t sum = ~before;
   for (const char byte : bytes) sum = table[(sum ^ static_cast<unsigned char>(byte)) & 0xff] ^ sum >> 8;
-  return sum ^ 0xffffffffU;
+  return ~sum;
 }
 
 std::string zip(const std::vector<EmittedFile>& files) {

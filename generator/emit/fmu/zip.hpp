@@ -12,8 +12,8 @@
 
 namespace eomgen::emit {
 
-/// The checksum of zip and PNG (ISO 3309, reflected polynomial 0xedb88320).
-std::uint32_t crc32(std::string_view bytes);
+/// The checksum of zip and PNG (ISO 3309, reflected polynomial 0xedb88320). `before`: that of the bytes before these.
+std::uint32_t crc32(std::string_view bytes, std::uint32_t before = 0);
 
 /// Throws Error if an entry or the archive exceeds 2 GB, or there are more than 65535 entries.
 std::string zip(const std::vector<EmittedFile>& files);
