@@ -179,6 +179,56 @@ TEST_CASE("sweep: memory stores neither rows nor the nodes that runs add to the 
   }
 }
 
+TEST_CASE("merge: shards give the bytes of the sweep in one call, interrupted or not") {
+  const Folder folder;
+  folder.write("oscillator.toml", oscillator_text());
+  const Words sweep{"sweep", "oscillator.toml", "--grid", "m=1,2,-1",           "--sample",
+                    "k=1:9", "--samples",       "5",      "--no-error-estimate"};
+  expect(3, folder, with(sweep, {"--out", "whole.csv"}));
+  for (const char* i : {"1", "2", "3", "4"})
+    document(folder, with(sweep, {"--out", std::string(i) + ".csv", "--shard", std::string(i) + "/4"}), 3);
+  const Json found =
+      document(folder, {"merge", "3.csv", "1.csv", "4.csv", "2.csv", "--out", "merged.csv", "--statistics"});
+  CHECK(found["runs"] == 15);
+  CHECK(found["shards"] == 4);
+  CHECK(found["statistics"].size() > 0);
+  CHECK(folder.read("merged.csv") == folder.read("whole.csv"));
+  // An interrupted shard lacks runs, and its own call computes them.
+  const std::string whole = folder.read("2.csv");
+  const std::size_t cut = whole.rfind('\n', whole.size() - 2) + 1;
+  folder.write("2.csv", whole.substr(0, cut));
+  const Words merge{"merge", "1.csv", "2.csv", "3.csv", "4.csv", "--out", "again.csv"};
+  const std::string reply = expect(2, folder, merge).err;
+  CHECK(contains(reply, "run 13 is missing, and 1 of 15 in all"));
+  CHECK(contains(reply, "sweep --shard 2/4"));
+  CHECK(document(folder, with(sweep, {"--out", "2.csv", "--shard", "2/4"}), 3)["resumed"] == 3);
+  expect(0, folder, merge);
+  CHECK(folder.read("again.csv") == folder.read("whole.csv"));
+  const auto refused = [&](const Words& words, const std::string& what) {
+    CAPTURE(what);
+    CHECK(contains(expect(2, folder, words).err, what));
+  };
+  refused({"merge", "1.csv", "2.csv", "4.csv", "-o", "no.csv"}, "shard 3/4 is missing");
+  refused({"merge", "1.csv", "1.csv", "-o", "no.csv"}, "are the same shard");
+  refused({"merge", "whole.csv", "-o", "no.csv"}, "is not the table of a shard");
+  refused({"merge", "none.csv", "-o", "no.csv"}, "cannot read");
+  expect(0, folder, {"sweep", "oscillator.toml", "--grid", "m=1,2", "--out", "other.csv", "--shard", "2/2"});
+  refused({"merge", "1.csv", "other.csv", "-o", "no.csv"}, "are of different sweeps");
+  CHECK_FALSE(folder.has("no.csv"));
+  refused({"sweep", "oscillator.toml", "--grid", "m=1,2", "--shard", "0/2"}, "is no shard");
+  refused({"sweep", "oscillator.toml", "--grid", "m=1,2", "--shard", "3/3"}, "has no runs");
+  refused({"sweep", "oscillator.toml", "--samples", "3"}, "no --sample names a parameter");
+  refused({"sweep", "oscillator.toml", "--sample", "k=1:2"}, "--samples gives no number");
+  refused({"sweep", "oscillator.toml", "--sample", "k=1", "--samples", "3"}, "is no range of samples");
+  refused({"sweep", "oscillator.toml", "--sample", "k=1:0:normal", "--samples", "3"}, "is not above 0");
+  refused({"sweep", "oscillator.toml", "--sample", "k=-1:1:log", "--samples", "3"}, "goes through 0");
+  refused({"sweep", "oscillator.toml", "--sample", "k=1:2", "--sample", "k=1:2", "--samples", "3"}, "is sampled twice");
+  refused({"sweep", "oscillator.toml", "--sample", "k=1:2", "--samples", "3", "--grid", "k=1,2"},
+          "has a grid and is sampled");
+  refused({"sweep", "oscillator.toml", "--sample", "k=1:2", "--samples", "3", "--design", "lattice"},
+          "choose random, latin or sobol");
+}
+
 TEST_CASE("merge: a table that ends in the middle of a line lacks that run; a single shard is a whole sweep") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
