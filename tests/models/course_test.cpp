@@ -12,7 +12,6 @@
 #include "derive/formulations/lagrange.hpp"
 #include "models/displayed_model.hpp"
 #include "models/rough.hpp"
-#include "numeric/numbers.hpp"
 #include "reading/balance_form.hpp"
 #include "reading/body_forces.hpp"
 #include "reading/contravariant.hpp"
@@ -445,30 +444,4 @@ TEST_CASE("S5_pin_and_ball: rods and pin hold, and the moment of momentum about 
   CHECK(run.drift("energy") < 1e-10);
   CHECK(std::abs(run.final("r1") - L1) < 1e-12);
   CHECK(std::abs(run.final("z1")) < 1e-12);
-}
-
-TEST_CASE("R18: every shipped representation gives the motion of Rodrigues' parameters from the same attitude") {
-  const auto turned = [](char axis, double angle) {
-    return Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d::Unit(axis - '1')));
-  };
-  const FinishedRun rodrigues = run_tightly("R18_rodrigues");
-  const auto check = [&](const FinishedRun& run, const Eigen::Quaterniond& attitude) {
-    run::Overrides overrides;
-    overrides.rtol = 1e-12;
-    overrides.atol = 1e-13;
-    for (int k = 0; k < 3; ++k)
-      overrides.values["l" + std::to_string(k + 1)] = numeric::exact(attitude.vec()(k) / attitude.w());
-    const run::RunResult other = pipeline::rerun(rodrigues.simulation, overrides);
-    for (const char* name : {"B.omega1", "B.omega2", "B.omega3", "A.position1", "A.position2", "A.position3"})
-      CHECK(std::abs(run.final(name) - value_of(other.final, name)) < 1e-9);
-  };
-  for (const char* axes : {"121", "123", "131", "132", "212", "213", "231", "232", "312", "313", "321", "323"}) {
-    CAPTURE(std::string(axes));
-    const FinishedRun run = run_tightly("R18_euler_" + std::string(axes));
-    const auto start = [&](const char* name) { return run.rows.at(0, name); };
-    check(run, turned(axes[0], start("n1")) * turned(axes[1], start("n2")) * turned(axes[2], start("n3")));
-  }
-  const FinishedRun parameters = run_tightly("R18_euler_parameters");
-  const auto start = [&](const char* name) { return parameters.rows.at(0, name); };
-  check(parameters, Eigen::Quaterniond(start("e0"), start("e1"), start("e2"), start("e3")));
 }
