@@ -66,8 +66,8 @@ class EventLocator {
         values_(functions_.size()),
         crossing_values_(functions_.size()),
         samples_(places.size() * functions_.size()),
-        is_clear_(functions_.size(), false),
-        x_(n) {}
+        x_(n),
+        is_clear_(functions_.size(), false) {}
 
   std::span<EventFunction> functions() { return functions_; }
   std::span<const EventFunction> functions() const { return functions_; }
@@ -391,10 +391,9 @@ class EventLocator {
   std::vector<double> size_;                      // largest value so far
   std::vector<double> residual_;                  // value at the start, for a function that starts on its surface
   std::vector<double> values_, crossing_values_;  // the latter at a crossing
-  std::vector<double> samples_;
+  std::vector<double> samples_, x_;
   std::vector<bool> is_clear_;               // in the step
   bool forward_ = true, all_clear_ = false;  // all monitored functions are clear: there are no samples
-  std::vector<double> x_;
 };
 
 }  // namespace eom
