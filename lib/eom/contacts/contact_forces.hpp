@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "eom/contacts/admissible_forces.hpp"
 #include "eom/contacts/description.hpp"
 #include "eom/contacts/least_norm.hpp"
 
@@ -238,9 +239,11 @@ class ContactForces {
     force_per_acceleration_.assign(set_.contacts.size(), 0.0);
     Matrix W(count, count);
     Vector right(count);
+    responses_.resize(static_cast<Index>(n_), count);
     for (Index k = 0; k < count; ++k) {
       if (const int code = response(t, x, u, patterns[static_cast<std::size_t>(k)], response_); code != 0) return code;
       for (Index i = 0; i < count; ++i) W(i, k) = change(*rows_[static_cast<std::size_t>(i)], response_);
+      responses_.col(k) = response_;
       const Row& row = *rows_[static_cast<std::size_t>(k)];
       right(k) = -acceleration(row, free_);
       const double share = std::abs(W(k, k)), size = observe_acceleration(row);
@@ -253,8 +256,9 @@ class ContactForces {
     std::fill(lambda_.begin(), lambda_.end(), 0.0);
     std::fill(phi_.begin(), phi_.end(), std::array<double, 2>{});
     if (count > 0) {
-      const LeastNorm forces = solve_least_norm(W, right);
+      LeastNorm forces = solve_least_norm(W, right);
       undetermined_ = undetermined_ || forces.rank < count;
+      if (forces.rank < count) make_admissible(forces.x);
       for (Index k = 0; k < count; ++k) {
         const Pattern& pattern = patterns[static_cast<std::size_t>(k)];
         push(u, pattern, forces.x(k));
@@ -359,6 +363,8 @@ class ContactForces {
       return;
     }
   }
+  /// Moves forces that the motion does not determine, of patterns_, within the limits of their laws.
+  void make_admissible(Vector& forces) const;
   void signs_of_margins(std::size_t j, double minus_free) {
     several_.resize(set_.contacts.size());
     several_[j] = minus_free < 0;
@@ -382,9 +388,12 @@ class ContactForces {
   std::vector<Pattern> patterns_;
   std::vector<const Row*> rows_;
   Vector free_, work_, response_;
+  Matrix responses_;  // n x patterns
   double least_slip_ = 0, largest_acceleration_ = 0;
   std::size_t changes_ = 0;
   bool undetermined_ = false;
 };
 
 }  // namespace eom::contacts
+
+#include "eom/contacts/force_limits.hpp"  // the member that finds admissible forces
