@@ -119,8 +119,7 @@ friction = { static = "mu", dynamic = "mu" }
 [scene.default]
 t = [0, 1]
 outputs = ["reaction.floor", "reaction.wall", "friction.floor", "friction.wall"]
-)toml" + ("initial = { q = \"" +
-          std::to_string(angle) + " deg\" }\n");
+)toml" + ("initial = { q = \"" + std::to_string(angle) + " deg\" }\n");
 }
 
 /// A box of 3 kg on two feet on a plane that is inclined by `angle`, pushed along it by F.
@@ -165,8 +164,9 @@ double least_margin(const FinishedRun& run, double mu, const std::string& first,
   double least = 1e300;
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     for (const std::string& name : {first, second}) {
-      const double normal = run.rows.at(i, "reaction." + name), friction = run.rows.at(i, "friction." + name);
-      least = std::min({least, normal, mu * normal - std::abs(friction)});
+      const auto friction = [&](const char* k) { return run.rows.at(i, "friction." + name + k); };
+      const double normal = run.rows.at(i, "reaction." + name);
+      least = std::min({least, normal, mu * normal - std::hypot(friction(".1"), friction(".2"), friction(".3"))});
     }
   }
   return least;
@@ -250,8 +250,8 @@ initial = { u = 0.3, v = 0 }
   }
 }
 
-// Three joints with dry friction at rest under loads: the one set of modes in which no friction drives the motion, found
-// by trying all 27 in a program apart. Two joints slide, and the middle one sticks.
+// Three joints with dry friction at rest under loads: the one set of modes in which no friction drives the motion,
+// found by trying all 27 in a program apart. Two joints slide, and the middle one sticks.
 TEST_CASE("contact decisions: friction of coupled coordinates at rest never drives the motion") {
   const FinishedRun run = test::run_text("dry_chain", R"toml(
 [coordinates]
@@ -335,8 +335,7 @@ TEST_CASE("contact decisions: a box on two feet rests on an incline, and slips w
   const double expected = place(2) - place(slip) - speed * (2 - slip);
   for (const double rtol : {1e-6, 1e-9, 1e-12}) {
     CAPTURE(rtol);
-    const FinishedRun run =
-        test::run_text("box_pushed", box_on_feet(0, 0.6, 0.5, "10*t"), at_tolerance(rtol));
+    const FinishedRun run = test::run_text("box_pushed", box_on_feet(0, 0.6, 0.5, "10*t"), at_tolerance(rtol));
     CHECK(run.simulation.result.outcome == eom::Outcome::done);
     REQUIRE(count_of(run, "slip") == 2);
     CHECK(events_of(run).size() == 2);
