@@ -123,7 +123,7 @@ std::string watched(const pipeline::Simulation& simulation) {
     out += line(simulation.derived->mechanics.contacts.empty() ? "impulses" : "impacts",
                 fmt::format("did the work {:.6g}", result.contact_work));
   if (!result.contact_forces_determined)
-    out += line("contacts", "the motion does not determine all their forces: those of least norm are shown");
+    out += line("contacts", "the motion does not determine all their forces: some within their laws are shown");
   constexpr double accurate = 1e-9;  // the accuracy of the laws that docs/theory.md states
   if (result.contact_residual > accurate)
     out +=

@@ -77,6 +77,11 @@ void Resolver::combine(TypedNode& result, const TypedNode& a, const TypedNode& b
     return;
   }
   result.is_bare_time = bare_a && bare_b;
+  const auto vanishes = [&](const TypedNode& typed) {
+    return model_.arena[typed.node].op == Op::zero_vector ||
+           (typed.literal && !typed.vector && typed.constant && cln::zerop(*typed.constant));
+  };
+  if (vanishes(a) || (!quotient_of && vanishes(b))) return;  // 0 fits every dimension
   if ((a.literal || a.dimension) && (b.literal || b.dimension)) {
     const Dimension left = a.literal ? Dimension{} : *a.dimension;
     const Dimension right = b.literal ? Dimension{} : *b.dimension;

@@ -4,8 +4,8 @@
 // which the next set follows.
 //
 // The accelerations are affine in the forces. One evaluation of the right-hand side for each unknown force gives their
-// slopes, in every formulation of the equations. Dependent rows (four corners on a plane) have the forces of least
-// norm.
+// slopes, in every formulation of the equations. Dependent rows (four corners on a plane) have forces within
+// their laws, if there are any (admissible_forces.hpp).
 #pragma once
 
 #include <Eigen/Dense>

@@ -49,7 +49,7 @@ struct RunResult {
   double constraint_drift = 0;  // largest |psi|, or |f . qdot + b| of a velocity constraint, at the end of a step
   double projection_position = 0, projection_velocity = 0, projection_work = 0;
   double impulse_work = 0;  // of impacts
-  /// False if at some time the motion did not determine the forces of closed contacts; those of least norm were taken.
+  /// False if at some time the motion did not determine the forces of closed contacts (contacts/admissible_forces.hpp).
   bool contact_forces_determined = true;
   /// Largest complementarity residual of the changes of contacts (contacts/friction_problem.hpp).
   double contact_residual = 0;
