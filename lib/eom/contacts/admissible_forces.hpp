@@ -19,14 +19,14 @@ namespace eom::contacts {
 
 /// The limits of one contact: N >= 0 and |T| <= coefficient N, with N = scale x(normal), or a given N.
 struct ForceLimit {
-  Eigen::Index normal = -1;     // index of lambda; -1: the normal force is given
-  double scale = 1;             // N / lambda
-  double given = 0;             // N, where it is given
-  bool holds = false;           // T is limited: the contact sticks
-  double coefficient = 0;       // of static friction
-  std::size_t tangents = 0;     // 0 to 2
-  Eigen::Index tangent = -1;    // index of the first component of T; the second one follows
-  double size = 1;              // of the forces, which makes margins comparable
+  Eigen::Index normal = -1;   // index of lambda; -1: the normal force is given
+  double scale = 1;           // N / lambda
+  double given = 0;           // N, where it is given
+  bool holds = false;         // T is limited: the contact sticks
+  double coefficient = 0;     // of static friction
+  std::size_t tangents = 0;   // 0 to 2
+  Eigen::Index tangent = -1;  // index of the first component of T; the second one follows
+  double size = 1;            // of the forces, which makes margins comparable
 };
 
 /// Finds forces x + Z y within the limits.
@@ -73,8 +73,8 @@ class AdmissibleForces {
   }
 
  private:
-  static constexpr double wanted = 1e-3;    // margin, as a share of the forces
-  static constexpr double pull = 1e-3;      // towards small y: margins may grow without bound
+  static constexpr double wanted = 1e-3;  // margin, as a share of the forces
+  static constexpr double pull = 1e-3;    // towards small y: margins may grow without bound
   static constexpr double last_weight = 1e-9, weight_ratio = 0.1;
   static constexpr int bisections = 40, most_newton_steps = 30;
 
@@ -93,7 +93,8 @@ class AdmissibleForces {
         const double fall = gradient.dot(direction);
         if (!direction.allFinite() || !(fall < -1e-10 * weight)) break;
         double length = 1;
-        while (length > 1e-10 && !(evaluate(v + length * direction, weight, nullptr, nullptr) <= now + 0.1 * length * fall))
+        while (length > 1e-10 &&
+               !(evaluate(v + length * direction, weight, nullptr, nullptr) <= now + 0.1 * length * fall))
           length /= 2;
         if (!(length > 1e-10)) break;
         v += length * direction;
@@ -154,7 +155,8 @@ class AdmissibleForces {
       value -= weight * std::log(inside);
       if (gradient == nullptr) continue;
       *gradient -= weight / inside * slope_of_inside;
-      *hessian += weight / (inside * inside) * slope_of_inside * slope_of_inside.transpose() - weight / inside * curvature;
+      *hessian +=
+          weight / (inside * inside) * slope_of_inside * slope_of_inside.transpose() - weight / inside * curvature;
     }
     return value;
   }

@@ -13,7 +13,7 @@ namespace eom {
 
 inline constexpr std::size_t contact_values = 5;
 
-namespace detail {
+namespace modes {
 
 /// Adds to `mode` the functions that bound it while contact j has this state.
 inline void watch_contact(const Contact& contact, std::size_t j, int digit, Mode& mode) {
@@ -37,8 +37,6 @@ inline void watch_contact(const Contact& contact, std::size_t j, int digit, Mode
   mode.name += (mode.name.empty() ? "" : ", ") + contact.name + state;
 }
 
-}  // namespace detail
-
 /// Modes by their numbers: contact_states to the power of the number of contacts.
 inline std::vector<Mode> contact_mode_table(const std::vector<Contact>& contacts) {
   std::size_t modes = 1;
@@ -46,9 +44,11 @@ inline std::vector<Mode> contact_mode_table(const std::vector<Contact>& contacts
   std::vector<Mode> table(modes);
   for (std::size_t m = 0; m < modes; ++m) {
     for (std::size_t j = 0; j < contacts.size(); ++j)
-      detail::watch_contact(contacts[j], j, contact_digit(static_cast<int>(m), j), table[m]);
+      watch_contact(contacts[j], j, contact_digit(static_cast<int>(m), j), table[m]);
   }
   return table;
 }
+
+}  // namespace modes
 
 }  // namespace eom

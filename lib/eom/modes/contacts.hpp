@@ -73,7 +73,7 @@ class Contacts {
       if (std::is_same_v<Motion, ContactMotion> && (contact.dimensions == 2 || contact.unilateral))
         throw std::invalid_argument("eom::Contacts: '" + contact.name + "' changes velocities, and no motion is given");
     }
-    table_ = contact_mode_table(contacts_);
+    table_ = modes::contact_mode_table(contacts_);
   }
 
   /// Number of event functions: contact_values of each contact.
