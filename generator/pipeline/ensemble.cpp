@@ -7,7 +7,6 @@
 #include <cmath>
 #include <eom/ensemble/integrate.hpp>
 #include <eom/hybrid/balance.hpp>
-#include <eom/hybrid/clearance.hpp>
 #include <eom/hybrid/event_ranges.hpp>
 #include <limits>
 #include <memory>
@@ -97,7 +96,6 @@ class Runs {
     }
     if (!events_.empty()) {
       ranges_.resize(how_.size());
-      clearances_.resize(how_.size());
     }
     kinetic_ = place("kinetic");
     potential_ = place("potential");
@@ -155,7 +153,6 @@ class Runs {
   struct One {
     const Runs& of;
     const eom::hybrid::EventRanges* ranges;  // null if there are none
-    eom::hybrid::Clearance* clearance;       // likewise
     const double *p, *w, *u;                 // null if there are none
     int operator()(double t, const double* x, double* dx) const {
       return w != nullptr ? of.code_.rhs_prepared(t, x, p, w, u, 0, dx) : of.code_.rhs(t, x, p, u, 0, dx);
@@ -169,12 +166,9 @@ class Runs {
     int taylor_order() const { return of.code_.taylor_order; }
     std::size_t taylor_states() const { return of.states_; }
     int events(double t, const double* x, double* values) const { return of.code_.events(t, x, p, u, 0, values); }
-    void begin_step(const eom::StepView& step) const {
-      if (ranges == nullptr) return;
-      ranges->begin_step();
-      clearance->begin_step(step);
+    void begin_step(const eom::StepView&) const {
+      if (ranges != nullptr) ranges->begin_step();
     }
-    bool is_clear(std::size_t i, int side) const { return clearance != nullptr && clearance->is_clear(i, side); }
     std::optional<std::pair<double, double>> hidden_crossing(const eom::StepView& step, std::size_t i, int side,
                                                              double from, double to) const {
       if (ranges == nullptr) return std::nullopt;
@@ -209,8 +203,7 @@ class Runs {
     int taylor_order() const { return of.code_.taylor_order; }
     One member_rhs(std::size_t member, const double* p) const {
       const double* const w = p + of.p_;
-      return {of, of.ranges_[member].get(), of.clearances_[member].get(),
-              p,  of.w_ > 0 ? w : nullptr,  of.u_ > 0 ? w + of.w_ : nullptr};
+      return {of, of.ranges_[member].get(), p, of.w_ > 0 ? w : nullptr, of.u_ > 0 ? w + of.w_ : nullptr};
     }
   };
 
@@ -276,8 +269,6 @@ class Runs {
       const eom::hybrid::StepVariables variables(states_, u_);
       ranges_[member] =
           std::make_unique<eom::hybrid::EventRanges>(first_.bounded_functions.events, variables, scene->parameters);
-      clearances_[member] =
-          std::make_unique<eom::hybrid::Clearance>(*ranges_[member], events_.size(), code_.free.size());
     }
     if (watches_energy_) energy_[member] = energy(outputs(start.t0, start.x, start.p)).first;
   }
@@ -294,7 +285,7 @@ class Runs {
 
   void finish(const eom::EnsembleEnd& end) {
     const std::size_t run = asked_.runs[end.member];
-    if (!events_.empty()) clearances_[end.member].reset(), ranges_[end.member].reset();
+    if (!events_.empty()) ranges_[end.member].reset();
     if (how_[end.member] == How::refused || end.outcome == eom::Outcome::interrupted || stopped()) return;
     run::RunResult result;
     const bool ended = end.outcome == eom::Outcome::done || end.outcome == eom::Outcome::stopped_by_event;
@@ -325,8 +316,7 @@ class Runs {
   std::vector<double> energy_;                                     // at the start of each
   std::vector<eom::EventFunction> events_;                         // of the model
   std::vector<std::unique_ptr<eom::hybrid::EventRanges>> ranges_;  // of the active members
-  std::vector<std::unique_ptr<eom::hybrid::Clearance>> clearances_;
-  std::size_t states_ = 0, p_ = 0, w_ = 0, u_ = 0;  // rows: parameters, prepared values, inputs
+  std::size_t states_ = 0, p_ = 0, w_ = 0, u_ = 0;                 // rows: parameters, prepared values, inputs
   std::size_t kinetic_ = 0, potential_ = 0;
   bool watches_energy_ = false;
   std::mutex lock_;

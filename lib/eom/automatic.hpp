@@ -62,6 +62,9 @@ class Automatic {
   static constexpr double rtol_of_dopri5 = 1e-4;
   /// radau5 above this value of rtol, else radau, whose order rises with the accuracy.
   static constexpr double rtol_of_radau5 = 1e-5;
+  /// And below this one: quadratures, such as the work of a run, do not control the steps and the order of radau, and
+  /// have larger errors there.
+  static constexpr double least_rtol_of_radau = 1e-11;
   static constexpr int dense_order = 4;
 
   Automatic(System& system, std::span<const double> x, const Options& options)
@@ -168,7 +171,9 @@ class Automatic {
     return options_.rtol > rtol_of_dopri5 ? explicit_rk::Dopri5::name : explicit_rk::Dop853::name;
   }
   Active explicit_method() const { return options_.rtol > rtol_of_dopri5 ? Active::dopri5 : Active::dop853; }
-  Active implicit_method() const { return options_.rtol > rtol_of_radau5 ? Active::radau5 : Active::radau; }
+  Active implicit_method() const {
+    return options_.rtol > rtol_of_radau5 || options_.rtol < least_rtol_of_radau ? Active::radau5 : Active::radau;
+  }
   /// A change back pays below this |h lambda|. It is well below the value that leads to radau5.
   double explicit_limit() const { return options_.rtol > rtol_of_dopri5 ? vibration_start : 0.5 * accuracy_limit(); }
 

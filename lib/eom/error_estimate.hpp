@@ -192,7 +192,7 @@ class Repetitions {
     const bool affordable =
         !bounded_ || used + used + used / 10 <= budget.steps(StepBudget::all_runs) + StepBudget::few;
     const Repetition third =
-        affordable ? tighter(options_, span_, first_.statistics.steps, order_, 0.35) : looser(options_, order_, 4);
+        affordable ? tighter(options_, span_, first_.statistics.steps, order_, 0.35) : looser_run(4);
     const Result other = repeat(third.options);
     if (affordable || other.outcome == first_.outcome) compare(other, third.remaining);
   }
@@ -206,8 +206,16 @@ class Repetitions {
     return again;
   }
 
+  /// A looser run needs fewer steps. One that takes twice as many is lost in a singular motion.
+  Repetition looser_run(double ratio) const {
+    Repetition result = looser(options_, order_, ratio);
+    const std::size_t steps = 2 * (first_.statistics.steps + first_.statistics.rejected) + StepBudget::few;
+    if (bounded_) result.options.max_steps = std::min(result.options.max_steps, steps);
+    return result;
+  }
+
   void compare_with_looser_run(const Repetition& second, const StepBudget& budget) {
-    const Repetition loose = looser(options_, order_, 10);
+    const Repetition loose = looser_run(10);
     if (const Result again = repeat(loose.options); again.outcome == first_.outcome) {
       compare(again, loose.remaining);
       estimate_.is_by_looser_run = true;

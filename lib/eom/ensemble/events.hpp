@@ -57,9 +57,6 @@ class EventMonitor {
     int operator()(double t, const double* x, double* values) const { return one.events(t, x, values); }
     void begin_step(const StepView& view) const requires requires { one.begin_step(view); }
     { one.begin_step(view); }
-    bool is_clear(const StepView&, std::size_t i, int side) const requires requires { one.is_clear(i, side); }
-    { return one.is_clear(i, side); }
-    void forget_step() const {}
     auto hidden_crossing(const StepView& view, std::size_t i, int side, double from,
                          double to) const requires requires {
       one.hidden_crossing(view, i, side, from, to);

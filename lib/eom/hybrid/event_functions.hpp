@@ -88,8 +88,10 @@ class EventFunctions {
     ranges_.begin_step();
     clearance_.begin_step(step);
   }
-  /// Whether function i has the sign `side` throughout the step.
+  /// Whether function i has the sign `side` throughout the step. Only gaps of contacts are tested: other events are
+  /// few, and ensembles, which evaluate the same ones, count the evaluations of each step.
   bool is_clear(std::size_t i, int side) {
+    if (i < first_contact()) return false;
     const bool clear = is_available(i) && clearance_.is_clear(i, side);
     if (i >= first_solved_contact() && i < first_jump() &&
         (i - first_solved_contact()) % SolvedContacts::values_per_contact == 0)
