@@ -77,7 +77,7 @@ TEST_CASE(
 TEST_CASE("auto: a decay a hundred thousand times faster than the motion leads to radau5 or radau, with the reason") {
   for (const double tolerance : {1e-4, 1e-8, 1e-12}) {
     CAPTURE(tolerance);
-    const char* implicit = tolerance > 1e-5 ? "radau5" : "radau";
+    const char* implicit = tolerance > 1e-5 || tolerance < 1e-11 ? "radau5" : "radau";
     MethodChoice choice, backwards;
     const Result found = eom::integrate("auto", Decay{}, 0, State{1}, 5, options_for(tolerance, choice));
     const auto mirrored = [](double t, const double* x, double* dx) {
