@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The method `auto`: dopri5 for rtol above 1e-4, else dop853. While the motion is stiff it is radau5 for rtol above
-// 1e-5, else radau. Options::choice records the changes and their reasons.
+// The method `auto`: dopri5 for rtol above 1e-4, else dop853. While the motion is stiff it is radau for rtol from
+// 1e-11 to 1e-5, else radau5. Options::choice records the changes and their reasons.
 //
 // Explicit methods: after each step |h lambda| is estimated from the last stage and the end, both at t1 (Hairer,
 // Wanner, Solving Ordinary Differential Equations II, section IV.2), and averaged. The motion counts as stiff after 15

@@ -86,6 +86,20 @@ TEST_CASE("target python: inputs that are functions are refused, with what takes
                        "assert m.simulate(m.defaults['t'] + 1e-3, u={'F': 2}).outcome == 'done'\n");
 }
 
+TEST_CASE("target python: simulate warns of inputs that vary in the scene and are not given") {
+  auto e = example("cart", cart_pendulum(), {"x", "theta"}, {"M", "m", "l", "g", "c"}, {"F"});
+  e.context.varying_inputs = {"F"};
+  compiles_and_imports(
+      e,
+      "\n"
+      "import warnings\n"
+      "for u, warned in ((None, 1), ({}, 1), ({'F': 2}, 0), ([2], 0)):\n"
+      "  with warnings.catch_warnings(record=True) as found:\n"
+      "    warnings.simplefilter('always')\n"
+      "    m.simulate(m.defaults['t'] + 1e-3, u=u)\n"
+      "  assert len([w for w in found if 'vary' in str(w.message) and 'F' in str(w.message)]) == warned, u\n");
+}
+
 TEST_CASE("target python: hostile names and texts cause no harm") {
   auto e = example("int", cart_pendulum(), {"I", "lambda"}, {"rhs", "import", "numpy", "main", "None"}, {"class"});
   e.context.title = "\"\"\" + exit(7) #\n%s {} \\";

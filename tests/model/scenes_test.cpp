@@ -142,3 +142,13 @@ TEST_CASE("an angle above a full turn without a unit causes a warning") {
   CHECK(read(particle("[scene.default]\ninitial = { R = 45, phi = 1, theta_dot = 45 }\n")).warnings.size() ==
         read(particle("[scene.default]\ninitial = { R = 1, phi = 1, theta_dot = 4 }\n")).warnings.size());
 }
+
+TEST_CASE("scenes: outputs may be conserved quantities, of which the derivation knows the names") {
+  const auto with_output = [](const std::string& name) {
+    return read(particle("[scene.default]\noutputs = [\"" + name + "\"]\n")).scenes[0].outputs.size();
+  };
+  for (const char* name : {"momentum.theta", "jacobi", "energy.applied", "linear_momentum.E1", "angular_momentum.E3"})
+    CHECK_MESSAGE(with_output(name) == 1, name);
+  for (const char* name : {"momentum.nothing", "momentum.m", "momentum", "integral.theta", "energy.kinetic"})
+    CHECK_THROWS_WITH_AS(with_output(name), doctest::Contains("there is no output"), eomgen::Error);
+}

@@ -219,3 +219,17 @@ TEST_CASE("units: formulas in a range or an armature of a coordinate state no un
   }
   CHECK_THROWS_WITH_AS(read(with_keys("{ unit = \"m\" }")), doctest::Contains("the units clash"), eomgen::Error);
 }
+
+TEST_CASE("units: a literal zero fits any unit, also as the vector to a point of contact") {
+  const auto sliding_at = [](const std::string& at) {
+    return read(
+               "format = 1\n[parameters]\nM = \"3 kg\"\n[[body]]\nname = \"W\"\nmass = \"M\"\n"
+               "inertia = \"1 kg*m^2\"\nposition = { cartesian = [\"X\", \"Y\"] }\n"
+               "rotation = { axis = \"E3\", angle = \"q\" }\n[[constraint]]\nname = \"floor\"\n"
+               "sliding = { body = \"W\", at = " +
+               at + ", on = { point = \"origin\", normal = \"E2\" } }\n")
+        .constraints.size();
+  };
+  CHECK(sliding_at("0") == sliding_at("\"0[m]*E2\""));
+  CHECK_THROWS_WITH_AS(sliding_at("\"1[s]*E2\""), doctest::Contains("the units clash"), eomgen::Error);
+}

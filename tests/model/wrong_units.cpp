@@ -49,6 +49,8 @@ std::vector<WrongModel> wrong_units() {
        "check the formula and the units of the names in it"},
       {"an unknown unit", pendulum({{"9.81 m/s^2", "9.81 m/sec^2"}}), "4:11", "'m/sec^2' is not a unit",
        "did you mean 'm/s^2'?"},
+      {"a product without an operator", pendulum({}, "[definitions]\na = \"2 th\"\n"), "13:8", "'th' is not a unit",
+       "did you mean 'h'?; a product is written with an operator: 2*th"},
       {"a unit with a blank in it", pendulum({{"9.81 m/s^2", "9.81 m / s^2"}}), "4:11",
        "an operator is missing before 'm'",
        "there is no implicit multiplication: write a*b; a unit stands last, without blanks in it, as in \"9.81 "

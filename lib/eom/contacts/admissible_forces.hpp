@@ -29,6 +29,24 @@ struct ForceLimit {
   double size = 1;            // of the forces, which makes margins comparable
 };
 
+/// Forces that obey their limits by this margin are taken as they are.
+inline constexpr double wanted_margin = 1e-3;
+
+/// The least margin of all limits, as a share of the sizes of their forces; 1 at most.
+inline double least_margin(const std::vector<ForceLimit>& limits, const Eigen::VectorXd& x) {
+  double least = 1;
+  for (const ForceLimit& limit : limits) {
+    const double normal = limit.normal < 0 ? limit.given : limit.scale * x(limit.normal);
+    if (limit.normal >= 0) least = std::min(least, normal / limit.size);
+    if (!limit.holds) continue;
+    double square = 0;
+    for (std::size_t a = 0; a < limit.tangents; ++a)
+      square += std::pow(x(limit.tangent + static_cast<Eigen::Index>(a)), 2);
+    least = std::min(least, (limit.coefficient * normal - std::sqrt(square)) / limit.size);
+  }
+  return least;
+}
+
 /// Finds forces x + Z y within the limits.
 class AdmissibleForces {
  public:
@@ -45,36 +63,21 @@ class AdmissibleForces {
 
   /// The forces. They are x if it obeys all limits by a margin.
   Vector find() const {
-    if (Z_.cols() == 0 || !(size_ > 0) || least_margin(x_) >= wanted) return x_;
+    if (Z_.cols() == 0 || !(size_ > 0) || least_margin(limits_, x_) >= wanted_margin) return x_;
     const Vector best = x_ + Z_ * largest_margin();
-    const double reached = least_margin(best);
+    const double reached = least_margin(limits_, best);
     if (!(reached > 0)) return best;
-    const double margin = std::min(wanted, reached / 2);
+    const double margin = std::min(wanted_margin, reached / 2);
     double outside = 0, inside = 1;  // of the way from x to the best forces: the margin is a concave function
     for (int k = 0; k < bisections; ++k) {
       const double middle = (outside + inside) / 2;
-      (least_margin(x_ + middle * (best - x_)) >= margin ? inside : outside) = middle;
+      (least_margin(limits_, x_ + middle * (best - x_)) >= margin ? inside : outside) = middle;
     }
     return x_ + std::min(1.0, 2 * inside) * (best - x_);
   }
 
-  /// The least margin of all limits, as a share of the sizes of their forces.
-  double least_margin(const Vector& x) const {
-    double least = 1;
-    for (const ForceLimit& limit : limits_) {
-      const double normal = limit.normal < 0 ? limit.given : limit.scale * x(limit.normal);
-      if (limit.normal >= 0) least = std::min(least, normal / limit.size);
-      if (!limit.holds) continue;
-      double square = 0;
-      for (std::size_t a = 0; a < limit.tangents; ++a) square += std::pow(x(limit.tangent + static_cast<Index>(a)), 2);
-      least = std::min(least, (limit.coefficient * normal - std::sqrt(square)) / limit.size);
-    }
-    return least;
-  }
-
  private:
-  static constexpr double wanted = 1e-3;  // margin, as a share of the forces
-  static constexpr double pull = 1e-3;    // towards small y: margins may grow without bound
+  static constexpr double pull = 1e-3;  // towards small y: margins may grow without bound
   static constexpr double last_weight = 1e-9, weight_ratio = 0.1;
   static constexpr int bisections = 40, most_newton_steps = 30;
 
@@ -83,7 +86,7 @@ class AdmissibleForces {
   Vector largest_margin() const {
     const Index d = Z_.cols();
     Vector v = Vector::Zero(d + 1);  // y, s
-    v(d) = least_margin(x_) - 1;
+    v(d) = least_margin(limits_, x_) - 1;
     for (double weight = 1; weight >= last_weight; weight *= weight_ratio) {
       for (int step = 0; step < most_newton_steps; ++step) {
         Vector gradient(d + 1);

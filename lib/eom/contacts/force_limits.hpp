@@ -35,6 +35,7 @@ inline void ContactForces::make_admissible(Vector& forces) const {
     if (limits[j].holds && limits[j].normal < 0 && contact(j).has_constraint()) continue;
     if (limits[j].size > 0) all.push_back(limits[j]);
   }
+  if (least_margin(all, forces) >= wanted_margin) return;  // most often
   forces = AdmissibleForces(forces, forces_without_effect(responses_), all).find();
 }
 

@@ -288,10 +288,11 @@ class SolvedContacts {
   void report(const std::vector<contacts::ContactState>& before, const std::vector<std::size_t>& hit, double work,
               std::vector<ContactImpulse> impulses);
 
-  /// False after many changes at the same time.
+  /// False after many changes at the same time, but for rounding.
   bool progresses(double t) {
     constexpr int most = 1000;
-    repeated_ = t == last_event_ ? repeated_ + 1 : 0;
+    constexpr double rounding = 1e-14;
+    repeated_ = std::abs(t - last_event_) <= rounding * std::abs(t) ? repeated_ + 1 : 0;
     last_event_ = t;
     return repeated_ < most;
   }

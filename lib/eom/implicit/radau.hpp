@@ -4,8 +4,7 @@
 // Mathematics 111 (1999). The order increases if Newton's iteration converges fast (contraction below 0.002) in steps
 // of steady length. It decreases if the iteration converges slowly (above 0.8) or not at all. It does not change within
 // ten steps of the last change. The first order is 5. Options::series_order fixes it; with fixed steps the default is
-// 5. Dense output: that of
-// radau5 for three stages, else the collocation polynomial, of order s.
+// 5. Dense output: that of radau5 for three stages, else the collocation polynomial, of order s.
 #pragma once
 
 #include <cstddef>
