@@ -77,7 +77,7 @@ class AdmissibleForces {
   }
 
  private:
-  static constexpr double pull = 1e-3;  // towards small y: margins may grow without bound
+  static constexpr double pull = 1e-7;  // towards small y: margins may grow without bound
   static constexpr double last_weight = 1e-9, weight_ratio = 0.1;
   static constexpr int bisections = 40, most_newton_steps = 30;
 

@@ -90,10 +90,12 @@ class ContactForces {
   /// Whether contact j is closed and has static friction.
   bool is_sticking(std::size_t j) const { return contact(j).sticks && states_[j].mode == Mode::closed; }
 
-  /// The least slip in two directions that has a direction of its own.
-  void set_least_slip(double speed) { least_slip_ = speed; }
-  /// The speed set by set_least_slip().
+  /// The least slip in two directions that has a direction of its own, and the slip up to which one that began is led
+  /// from the direction in which it began to its own.
+  void set_least_slip(double least, double start) { least_slip_ = least, start_slip_ = start; }
+  /// The speeds set by set_least_slip().
   double least_slip() const { return least_slip_; }
+  double start_slip() const { return start_slip_; }
 
   /// Evaluates the rows at (t, x); u has no contact forces.
   int evaluate_rows(double t, const double* x, const double* u) { return system_.rows(t, x, u, c_.data()); }
@@ -124,20 +126,7 @@ class ContactForces {
   }
 
   /// The direction of slip of a sliding contact, times the share of the Coulomb force that its law gives.
-  std::array<double, 2> direction(std::size_t j) const {
-    const Description& at = contact(j);
-    std::array<double, 2> w{};
-    for (std::size_t a = 0; a < at.slip.size(); ++a) w[a] = rate(at.slip[a]);
-    if (at.width != none) {
-      const double size = std::sqrt(w[0] * w[0] + w[1] * w[1] + c_[at.width] * c_[at.width]);
-      if (size == 0) return {};  // a slip that constraints prescribe has no width
-      return {w[0] / size, w[1] / size};
-    }
-    if (at.slip.size() == 1) return {states_[j].mode == Mode::sliding_back ? -1.0 : 1.0, 0};
-    const double speed = slip_speed(j);
-    if (speed <= least_slip_) return states_[j].direction;
-    return {w[0] / speed, w[1] / speed};
-  }
+  std::array<double, 2> direction(std::size_t j) const;
   /// Whether the friction of a contact follows from its normal force and its slip.
   bool has_friction(std::size_t j) const {
     return is_closed(j) && !contact(j).slip.empty() && !(contact(j).sticks && states_[j].mode == Mode::closed);
@@ -389,11 +378,12 @@ class ContactForces {
   std::vector<const Row*> rows_;
   Vector free_, work_, response_;
   Matrix responses_;  // n x patterns
-  double least_slip_ = 0, largest_acceleration_ = 0;
+  double least_slip_ = 0, start_slip_ = 0, largest_acceleration_ = 0;
   std::size_t changes_ = 0;
   bool undetermined_ = false;
 };
 
 }  // namespace eom::contacts
 
-#include "eom/contacts/force_limits.hpp"  // the member that finds admissible forces
+#include "eom/contacts/force_limits.hpp"    // the member that finds admissible forces
+#include "eom/contacts/slip_direction.hpp"  // the member that gives directions of slip

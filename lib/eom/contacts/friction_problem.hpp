@@ -7,11 +7,12 @@
 // impulses of an impact follow. Friction in one direction is exact: with beta in both senses and sigma the speed,
 //   G z + q + sigma >= 0, mu N - sum beta >= 0, both complementary (Anitescu and Potra 1997, eq. (9)),
 // solved by Lemke's pivoting. In two directions this problem has a polygon in place of the circle; its solution starts
-// a projected Gauss-Seidel iteration on the circle, which ends at 1e-13.
+// an iteration on the circle, which ends at 1e-13: Newton's method, or projected Gauss-Seidel where that fails.
 #pragma once
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -100,6 +101,13 @@ class Solver {
     for (Index i = 0; i < p_.q.size(); ++i)
       (p_.kinds[static_cast<std::size_t>(i)] == FrictionProblem::Kind::bilateral ? held_ : free_).push_back(i);
     eliminate_held();
+    for (const FrictionLaw& law : p_.laws) {
+      Vector slopes;
+      limits_.push_back(limit(law, slopes));
+      limit_slopes_.push_back(std::move(slopes));
+      std::vector<Index>& places = tangent_places_.emplace_back();
+      for (const Index row : law.tangents) places.push_back(place(row));
+    }
   }
 
   /// The pivoting without scaling is least disturbed by dependent rows; with scaling it does not depend on units. The
@@ -247,13 +255,24 @@ class Solver {
     return result;
   }
 
-  /// Gauss-Seidel with projections onto the half line of normals and the discs of friction.
+  /// Projects onto the half lines of normals and the discs of friction, until nothing changes.
   void refine(FrictionForces& result) const {
-    constexpr int most = 200000;
+    constexpr int few = 20, most = 200000;
     constexpr double enough = 1e-13;
-    const Index f = q_.size();
-    Vector y(f);
-    for (Index i = 0; i < f; ++i) y(i) = result.force(free_at(i));
+    Vector y(q_.size());
+    for (Index i = 0; i < y.size(); ++i) y(i) = result.force(free_at(i));
+    if (!sweep(y, few, enough)) {
+      Vector better = y;
+      if (iterate_newton(better, enough))
+        y = better;
+      else
+        sweep(y, most, enough);
+    }
+    result = complete(y);
+  }
+
+  /// Gauss-Seidel with projections. Returns whether the last round changed no force by more than `enough`.
+  bool sweep(Vector& y, int rounds, double enough) const {
     Vector velocity = G_ * y + q_;
     const auto set = [&](Index i, double value) {
       const double change = value - y(i);
@@ -263,38 +282,40 @@ class Solver {
       return std::abs(change);
     };
     double size = std::max(1e-300, y.lpNorm<Eigen::Infinity>());
-    for (int round = 0; round < most; ++round) {
+    for (int round = 0; round < rounds; ++round) {
       double moved = 0;
-      for (Index i = 0; i < f; ++i) {
+      for (Index i = 0; i < y.size(); ++i) {
         if (p_.kinds[static_cast<std::size_t>(free_at(i))] != FrictionProblem::Kind::unilateral || !(G_(i, i) > 0))
           continue;
         moved = std::max(moved, set(i, std::max(0.0, y(i) - velocity(i) / G_(i, i))));
       }
-      for (const FrictionLaw& law : p_.laws) moved = std::max(moved, rub(law, y, velocity, set));
+      for (std::size_t l = 0; l < p_.laws.size(); ++l) moved = std::max(moved, project_friction(l, y, velocity, set));
       size = std::max(size, y.lpNorm<Eigen::Infinity>());
-      if (moved <= enough * size) break;
+      if (moved <= enough * size) return true;
     }
-    result = complete(y);
+    return false;
   }
 
   template <class Set>
-  double rub(const FrictionLaw& law, const Vector& y, const Vector& velocity, const Set& set) const {
-    Vector by_force;
-    const double most = std::max(0.0, limit(law, by_force) + by_force.dot(y));
-    std::vector<double> wanted;
+  double project_friction(std::size_t l, const Vector& y, const Vector& velocity, const Set& set) const {
+    const std::vector<Index>& at = tangent_places_[l];
+    const double most = std::max(0.0, limits_[l] + limit_slopes_[l].dot(y));
+    std::array<double, 2> wanted{};
     double square = 0, slowest = 0;
-    for (const Index row : law.tangents) slowest = std::max(slowest, G_(place(row), place(row)));
+    for (const Index i : at) slowest = std::max(slowest, G_(i, i));
     if (!(slowest > 0)) return 0;
-    for (const Index row : law.tangents) {
-      wanted.push_back(y(place(row)) - velocity(place(row)) / slowest);
-      square += wanted.back() * wanted.back();
+    for (std::size_t a = 0; a < at.size(); ++a) {
+      wanted[a] = y(at[a]) - velocity(at[a]) / slowest;
+      square += wanted[a] * wanted[a];
     }
     const double length = std::sqrt(square), factor = length > most ? most / length : 1;
     double moved = 0;
-    for (std::size_t a = 0; a < wanted.size(); ++a)
-      moved = std::max(moved, set(place(law.tangents[a]), factor * wanted[a]));
+    for (std::size_t a = 0; a < at.size(); ++a) moved = std::max(moved, set(at[a], factor * wanted[a]));
     return moved;
   }
+
+  Vector projection_defect(const Vector& y, Matrix* J) const;
+  bool iterate_newton(Vector& y, double enough) const;
 
   static constexpr std::size_t polygon = 8;
 
@@ -305,6 +326,10 @@ class Solver {
   std::vector<Index> held_, free_;
   Matrix G_, H_;
   Vector q_, h0_;
+  // Per law: its tangents among the free rows, and its normal force as an affine function of their forces.
+  std::vector<std::vector<Index>> tangent_places_;
+  std::vector<double> limits_;
+  std::vector<Vector> limit_slopes_;
 };
 
 }  // namespace friction
@@ -312,3 +337,5 @@ class Solver {
 inline FrictionForces solve_friction_problem(const FrictionProblem& problem) { return friction::Solver(problem).run(); }
 
 }  // namespace eom::contacts
+
+#include "eom/contacts/friction_newton.hpp"  // the member that solves by Newton's method

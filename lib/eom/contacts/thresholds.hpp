@@ -77,6 +77,12 @@ class Thresholds {
     const double terms = std::max(sizes_.terms[j], forces_.terms(forces_.contact(j).normal, x));
     return std::max(roundings * std::numeric_limits<double>::epsilon() * terms, of_gaps * sizes_.gap[j]);
   }
+  /// Bounces up to this height are none. Rounding lets a contact fall further than it rose: at most as far as the
+  /// locator's rounding of a gap. Above this height each rocking or bounce loses more than it gains by that.
+  double low_bounce(std::size_t j, const double* x) const {
+    constexpr double roundings = 10, of_gaps = 1e-12;
+    return std::max(roundings * gap_rounding(j, x), of_gaps * sizes_.gap[j]);
+  }
   /// The least slip in two directions whose direction is known at the state x.
   double least_slip(const double* x) const {
     constexpr double tolerances = 30;
@@ -91,6 +97,14 @@ class Thresholds {
       }
     }
     return least;
+  }
+  /// The slip up to which one that began with a slip of 0 keeps some of the direction in which it began. The rate of
+  /// change of friction, mu N / (m slip), is bounded in that way. Where the slip grows as c t^2 and its direction turns
+  /// at the rate k, friction along the slip is wrong by k^2 t^2 / 2, and the speed by an amount that grows with the
+  /// power 3/2 of the slip at the end: it is of the size of the tolerance if that slip grows with its power 2/3.
+  double start_slip(double least) const {
+    constexpr double at_least = 2, share = 0.06;
+    return least * std::max(at_least, share / std::cbrt(std::max(rtol_, 1e-15)));
   }
   Tolerances tolerances() const { return {negligible_speed(), std::max(negligible_speed(), forces_.least_slip())}; }
 

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -24,6 +25,13 @@ struct Hint {
   bool parts = false;  // its normal force vanished
   bool slips = false;  // friction reached its limit
   bool stops = false;  // its slip vanished
+};
+
+/// A state a short time after a crossing, in the modes before it, where the function that crossed is clearly negative.
+/// At the crossing itself both modes obey the laws; only what follows tells which contacts change together.
+struct LaterState {
+  double t = 0;
+  std::vector<double> x, u;  // u has no contact forces
 };
 
 class Transitions {
@@ -84,10 +92,16 @@ class Transitions {
   }
 
   /// The states of the contacts at (t, x), whose gap speeds are not negative. Only those in `touching` can be closed.
+  /// `later`: the state of which the forces decide; none: (t, x), with a small acceleration towards the change.
   Result decide(double t, const double* x, double* u, const std::vector<std::size_t>& touching, const Hint& hint,
-                const Tolerances& tolerances) {
+                const Tolerances& tolerances, std::optional<LaterState> later = {}) {
     if (const int code = forces_.evaluate_rows(t, x, u); code != 0) return {Outcome::no_value, code, none};
     begin_states(touching, hint, tolerances);
+    if (later) {
+      t = later->t, x = later->x.data(), u = later->u.data();
+      if (const int code = forces_.evaluate_rows(t, x, u); code != 0) return {Outcome::no_value, code, none};
+    }
+    favours_ = !later;
     std::vector<bool> broken(forces_.set().contacts.size(), false);
     if (hint.slips) broken[hint.contact] = true;
     for (std::size_t round = 0; round <= forces_.set().contacts.size(); ++round) {
@@ -244,7 +258,9 @@ class Transitions {
       state.mode = Mode::closed;
       state.starts = false;
       if (!at.sticks || (hint.stops && hint.contact == j)) continue;
-      const bool moves = forces_.slip_speed(j) > (at.slip.size() == 2 ? tolerances.slip : tolerances.speed);
+      // Points of one body that slides to rest stop together, though their slips differ by the error of the run.
+      const double slowest = hint.stops ? 2 * tolerances.slip : tolerances.slip;
+      const bool moves = forces_.slip_speed(j) > (at.slip.size() == 2 ? slowest : tolerances.speed);
       if (moves) state.mode = at.slip.size() == 1 && forces_.rate(at.slip[0]) < 0 ? Mode::sliding_back : Mode::sliding;
     }
   }
@@ -280,13 +296,14 @@ class Transitions {
     favour(rows, size, hint);
     const FrictionForces found = solve(problem);
     if (!found.found) return {Outcome::no_solution, 0, rows.fastest_contact()};
-    const double least = std::max(count > 0 ? negligible * size.maxCoeff() : 0.0, forces_.acceleration_rounding());
+    const double largest = count > 0 ? size.maxCoeff() : 0, rounding = forces_.acceleration_rounding();
+    const double least = std::max(negligible * largest, rounding), opening = std::max(opens * largest, rounding);
     for (Index i = 0; i < count; ++i) {
       const std::size_t j = rows.contact(i);
       // One of the two is 0, but for rounding.
       const bool separates = !(found.force(i) > 0) || found.velocity(i) > problem.G(i, i) * found.force(i);
       if (rows.kind(i) == Kind::unilateral && separates &&
-          (found.velocity(i) > least || (hint.parts && hint.contact == j)))
+          (found.velocity(i) > opening || (hint.parts && hint.contact == j)))
         forces_.states()[j].mode = Mode::open;
       if (rows.kind(i) == Kind::bilateral && found.force(i) != 0)
         forces_.states()[j].normal_sign = found.force(i) < 0 ? -1 : 1;
@@ -321,7 +338,7 @@ class Transitions {
   /// Adds a small acceleration towards the change that the crossing announces: at the crossing itself both states obey
   /// the law.
   void favour(ContactProblem& rows, const Vector& size, const Hint& hint) const {
-    if (hint.contact == none) return;
+    if (hint.contact == none || !favours_) return;
     Vector& q = rows.problem().q;
     const double largest = size.size() > 0 ? size.maxCoeff() : 0;
     std::size_t a = 0;
@@ -349,11 +366,13 @@ class Transitions {
  private:
   using Kind = FrictionProblem::Kind;
   static constexpr double negligible = 1e-12, announced = 1e-9;
+  static constexpr double opens = 1e-10;  // forces of dependent rows are known to 1e-13, times their differences
 
   ContactForces& forces_;
   std::size_t n_;
   std::size_t input_count_ = 0;
   double largest_residual_ = 0;
+  bool favours_ = true;
   Vector before_;  // rates at which the rows were evaluated
   std::vector<Impulse> impulses_;
   std::array<double, 2> friction_before_{};

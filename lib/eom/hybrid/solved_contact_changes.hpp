@@ -37,7 +37,6 @@ inline void SolvedContacts::end_bounces(std::size_t j, std::vector<std::size_t>&
 
 inline bool SolvedContacts::stop_low_bounces(double t, std::span<double> x, std::vector<std::size_t>& touching,
                                              std::vector<bool>& plastic) {
-  constexpr double roundings = 10;
   contacts::ContactForces::Vector qddot;
   if (forces_.evaluate_accelerations(t, x.data(), model_.inputs_without_contacts(t), qddot) != 0) return false;
   bool meets = false, rest = true;
@@ -47,7 +46,7 @@ inline bool SolvedContacts::stop_low_bounces(double t, std::span<double> x, std:
     if (!at.unilateral || !(forces_.rate(at.normal) < -thresholds_.negligible_speed())) continue;
     const double speed = -forces_.rate(at.normal), away = speed * forces_.value(at.restitution);
     const double back = -forces_.acceleration(at.normal, qddot);
-    const double known = roundings * thresholds_.gap_rounding(i, x.data());
+    const double known = thresholds_.low_bounce(i, x.data());
     if (away > 0 && back > 0 && away * away / (2 * back) <= known) plastic[i] = true;
     if (away <= thresholds_.negligible_speed()) plastic[i] = true;
     meets = true;
@@ -57,14 +56,15 @@ inline bool SolvedContacts::stop_low_bounces(double t, std::span<double> x, std:
   for (std::size_t i = 0; i < size(); ++i) {
     const contacts::Description& at = forces_.contact(i);
     if (!at.unilateral || std::find(touching.begin(), touching.end(), i) != touching.end()) continue;
-    if (forces_.value(at.gap) <= roundings * thresholds_.gap_rounding(i, x.data())) touching.push_back(i);
+    if (forces_.value(at.gap) <= thresholds_.low_bounce(i, x.data())) touching.push_back(i);
   }
   std::sort(touching.begin(), touching.end());
   return true;
 }
 
 inline void SolvedContacts::meet(double t, std::span<double> x, const std::vector<std::size_t>& touching,
-                                 std::vector<bool> plastic, bool rest, const contacts::Hint& hint) {
+                                 std::vector<bool> plastic, bool rest, const contacts::Hint& hint,
+                                 std::optional<contacts::LaterState> later) {
   plastic.resize(size(), false);
   const std::vector<contacts::ContactState> before = forces_.states();
   const std::vector<double> state(x.begin(), x.end());
@@ -74,8 +74,8 @@ inline void SolvedContacts::meet(double t, std::span<double> x, const std::vecto
     result = transitions_.impact(t, x.data(), model_.inputs_without_contacts(t), touching, plastic, rest,
                                  thresholds_.tolerances(), hit);
   if (result.outcome == contacts::Transitions::Outcome::done)
-    result =
-        transitions_.decide(t, x.data(), model_.inputs_without_contacts(t), touching, hint, thresholds_.tolerances());
+    result = transitions_.decide(t, x.data(), model_.inputs_without_contacts(t), touching, hint,
+                                 thresholds_.tolerances(), std::move(later));
   model_.forget_contact_forces();
   if (result.outcome != contacts::Transitions::Outcome::done) {
     using Result = contacts::Transitions::Outcome;
@@ -89,6 +89,33 @@ inline void SolvedContacts::meet(double t, std::span<double> x, const std::vecto
   std::vector<ContactImpulse> of_impact;
   if (!hit.empty()) work = changed_(t, state, x), of_impact = impulses(t, x);
   report(before, hit, work, std::move(of_impact));
+}
+
+inline std::optional<contacts::LaterState> SolvedContacts::later_state(double t, std::span<const double> x,
+                                                                       std::size_t function) {
+  constexpr double clear = 1e-9, far = 1e-3;  // of the forces of the contact
+  const std::size_t j = function / values_per_contact, n = problem_.n();
+  const contacts::Description& at = forces_.contact(j);
+  contacts::ContactForces::Vector qddot;
+  if (forces_.evaluate_accelerations(t, x.data(), model_.inputs_without_contacts(t), qddot) != 0) return std::nullopt;
+  const double length = std::abs(problem_.t1 - problem_.t0);
+  for (double after = 1e-10 * length; after < 1e-3 * length; after *= 10) {
+    contacts::LaterState later{t + after, {x.begin(), x.end()}, {}};
+    for (std::size_t i = 0; i < n; ++i) {
+      later.x[i] += after * x[n + i];
+      later.x[n + i] += after * qddot(static_cast<Eigen::Index>(i));
+    }
+    double* const u = model_.inputs_without_contacts(later.t);
+    later.u.assign(u, u + problem_.inputs.size());
+    if (forces_.solve(later.t, later.x.data(), u) != 0) return std::nullopt;
+    const double value = function % values_per_contact == 1 ? bound_of_friction(j, 0)
+                         : at.unilateral                    ? forces_.lambda(j)
+                                                            : sign(j) * forces_.lambda(j);
+    const double beyond = -value / forces_.force_size(j);
+    if (beyond > far) return std::nullopt;
+    if (beyond > clear) return later;
+  }
+  return std::nullopt;
 }
 
 inline bool SolvedContacts::approaches(const std::vector<std::size_t>& touching) const {

@@ -156,10 +156,9 @@ class SolvedContacts {
   /// Called at the start of each step.
   void update(const double* x) {
     if (forces_.all_open()) return;
-    forces_.set_least_slip(thresholds_.least_slip(x));
+    set_least_slip(x);
     for (std::size_t j = 0; j < size(); ++j)
-      if (std::as_const(forces_).states()[j].starts && forces_.slip_speed(j) > 2 * forces_.least_slip())
-        forces_.states()[j].starts = false;
+      if (std::as_const(forces_).states()[j].starts && has_started(j)) forces_.states()[j].starts = false;
   }
 
   EventAction handle_event(double& t, std::span<double> x, const Crossing& crossing,
@@ -189,11 +188,12 @@ class SolvedContacts {
     const bool meets = which == 0 && !forces_.is_closed(j);
     if (meets) {
       add_touching(t, x, touching);
-      forces_.set_least_slip(thresholds_.least_slip(x.data()));
+      set_least_slip(x.data());
       if (chatter_.add_transition(t)) end_bounces(j, touching, plastic);
       rest = stop_low_bounces(t, x, touching, plastic);
     }
-    meet(t, x, touching, plastic, rest, hint);
+    meet(t, x, touching, plastic, rest, hint,
+         hint.slips || hint.parts ? later_state(t, x, crossing.function) : std::nullopt);
     if (end_) return EventAction::stop;
     if (!progresses(t)) {
       end_ = Outcome::step_too_small;
@@ -260,6 +260,20 @@ class SolvedContacts {
   double sign(std::size_t j) const { return forces_.states()[j].normal_sign; }
   bool has_gap_row(std::size_t j) const { return forces_.contact(j).has_constraint() && forces_.is_closed(j); }
 
+  void set_least_slip(const double* x) {
+    const double least = thresholds_.least_slip(x);
+    forces_.set_least_slip(least, thresholds_.start_slip(least));
+  }
+  /// Whether a slip that began is large enough to end, or has a direction of its own away from that in which it began.
+  bool has_started(std::size_t j) const {
+    const double speed = forces_.slip_speed(j);
+    if (speed <= forces_.least_slip()) return false;
+    const std::array<double, 2>& began = forces_.states()[j].direction;
+    double along = 0;
+    for (std::size_t a = 0; a < 2; ++a) along += began[a] * forces_.rate(forces_.contact(j).slip[a]);
+    return speed > forces_.start_slip() || along < 0.5 * speed;
+  }
+
   double bound_of_friction(std::size_t j, double rounding) const {
     const contacts::Description& at = forces_.contact(j);
     if (forces_.states()[j].mode == contacts::Mode::closed) {
@@ -281,7 +295,9 @@ class SolvedContacts {
   bool stop_low_bounces(double t, std::span<double> x, std::vector<std::size_t>& touching, std::vector<bool>& plastic);
   /// Impulses of contacts that approach, then new modes.
   void meet(double t, std::span<double> x, const std::vector<std::size_t>& touching, std::vector<bool> plastic,
-            bool rest, const contacts::Hint& hint);
+            bool rest, const contacts::Hint& hint, std::optional<contacts::LaterState> later = {});
+  /// A state after (t, x), at which this function has crossed zero, where it is negative by more than rounding.
+  std::optional<contacts::LaterState> later_state(double t, std::span<const double> x, std::size_t function);
   bool approaches(const std::vector<std::size_t>& touching) const;
   /// The impulses of the last impact, which ended in the state x.
   std::vector<ContactImpulse> impulses(double t, std::span<const double> x);
