@@ -21,6 +21,53 @@ std::uintptr_t bits(const Rational& value) {
   return cln::integer_length(cln::numerator(value)) + cln::integer_length(cln::denominator(value));
 }
 
+/// r of r pi; empty for other expressions.
+std::optional<Rational> multiple_of_pi(const Dag& dag, Ref a) {
+  const Node& node = dag[a];
+  if (node.op == Op::pi) return Rational(1);
+  if (node.op == Op::div && dag.is_constant(node.args[1])) {
+    const std::optional<Rational> r = multiple_of_pi(dag, node.args[0]);
+    if (r) return *r / dag.value(node.args[1]);
+  }
+  if (node.op != Op::mul) return std::nullopt;
+  for (const std::size_t k : {0, 1}) {
+    if (!dag.is_constant(node.args[k])) continue;
+    const std::optional<Rational> r = multiple_of_pi(dag, node.args[1 - k]);
+    if (r) return *r * dag.value(node.args[k]);
+  }
+  return std::nullopt;
+}
+
+/// sin(r pi) of r between 0 and 1/2, where it is a fraction.
+std::optional<Rational> rational_sine(const Rational& r) {
+  if (cln::zerop(r)) return Rational(0);
+  if (r == Rational(1) / 6) return Rational(1) / 2;
+  if (r == Rational(1) / 2) return Rational(1);
+  return std::nullopt;
+}
+
+/// The sine or cosine of r pi: a number, or that of an angle between 0 and pi/2. Empty if it is already that.
+std::optional<Ref> of_multiple_of_pi(Dag& dag, Op function, const Rational& r) {
+  Rational turn = r - 2 * cln::floor1(r / 2);  // 0 to 2
+  bool negative = false;
+  if (turn > 1) {
+    turn = function == Op::sin ? turn - 1 : 2 - turn;
+    negative = function == Op::sin;
+  }
+  if (turn > Rational(1) / 2) {
+    turn = 1 - turn;
+    negative = negative != (function == Op::cos);
+  }
+  Ref value;
+  if (const std::optional<Rational> exact = rational_sine(function == Op::sin ? turn : Rational(1) / 2 - turn))
+    value = dag.constant(*exact);
+  else if (turn == r)
+    return std::nullopt;
+  else
+    value = dag.call(function, dag.mul(dag.constant(turn), dag.pi()));
+  return negative ? dag.neg(value) : value;
+}
+
 }  // namespace
 
 Ref Dag::make(Op op, Ref a, Ref b) {
@@ -191,6 +238,11 @@ Ref Dag::call(Op function, Ref a) {
   }
   if (function == Op::sqrt) {
     if (const std::optional<Ref> root = exact_root(a)) return *root;
+  }
+  if (function == Op::sin || function == Op::cos) {
+    const std::optional<Rational> r = multiple_of_pi(*this, a);
+    const std::optional<Ref> known = r ? of_multiple_of_pi(*this, function, *r) : std::nullopt;
+    if (known) return *known;
   }
   Node result;
   result.op = function;

@@ -41,6 +41,33 @@ TEST_CASE("dag: zeros and ones are eliminated, exact numbers are folded exactly"
   CHECK(dag.pow(x, dag.constant(Rational(3) / 2)) == dag.power(dag.call(Op::sqrt, x), 3));
 }
 
+TEST_CASE("dag: sines and cosines of multiples of pi are fractions, or those of angles between 0 and pi/2") {
+  Dag dag;
+  const auto turned = [&](Op function, const Rational& r) {
+    return dag.call(function, dag.mul(dag.constant(r), dag.pi()));
+  };
+  CHECK(dag.is_zero(dag.call(Op::sin, dag.pi())));
+  CHECK(dag.call(Op::cos, dag.pi()) == dag.integer(-1));
+  CHECK(dag.is_zero(dag.call(Op::cos, dag.div(dag.pi(), dag.integer(2)))));
+  CHECK(dag.call(Op::sin, dag.neg(dag.div(dag.pi(), dag.integer(2)))) == dag.integer(-1));
+  for (long k = -48; k <= 48; ++k) {
+    const Rational r = Rational(k) / 12;
+    for (const Op function : {Op::sin, Op::cos}) {
+      CAPTURE(k);
+      const Ref found = turned(function, r);
+      const cln::cl_R value = evaluate(
+          dag, {found}, [](const Symbol&) -> cln::cl_R { return 0; }, 40)[0];
+      const cln::cl_F angle = cln::cl_float(r, cln::float_format(60)) * cln::pi(cln::float_format(60));
+      CHECK(cln::abs(value - (function == Op::sin ? cln::sin(angle) : cln::cos(angle))) < 1e-35);
+      // Of 24 angles, fractions are the sines of 8 and the cosines of as many.
+      const long from_axis = (function == Op::sin ? k : k + 6) % 12, steps = from_axis < 0 ? from_axis + 12 : from_axis;
+      CHECK(dag.is_constant(found) == (steps == 0 || steps == 2 || steps == 6 || steps == 10));
+    }
+  }
+  CHECK(turned(Op::sin, Rational(8) / 7) == dag.neg(turned(Op::sin, Rational(1) / 7)));
+  CHECK(turned(Op::cos, Rational(-6) / 7) == dag.neg(turned(Op::cos, Rational(1) / 7)));
+}
+
 TEST_CASE("dag: huge powers of numbers stay symbolic") {
   Dag dag;
   const Ref huge = dag.power(dag.integer(9), 100000);
