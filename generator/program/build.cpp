@@ -178,7 +178,14 @@ std::vector<std::unique_ptr<AbiFunctions>> with_residual(const std::vector<syste
     if (system.formulation != "recursive" && !articulated) continue;
     system::EquationSystem copy = system;
     copy.residual = residual;
-    if (articulated && system.solution && system.active.empty()) add(copy, Ties::ascending);
+    if (articulated && system.solution && system.active.empty()) {
+      add(copy, Ties::ascending);
+      if (!residual->qddot.empty() && residual->qddot != system.solution->qddot) {
+        copy.solution->qddot = residual->qddot;
+        copy.solution->pivots = residual->pivots;
+        add(copy, Ties::ascending);
+      }
+    }
     const std::pair<system::Approach, system::Form> form{system.approach, system.form};
     if (std::find(known.begin(), known.end(), form) != known.end()) continue;
     known.push_back(form);
@@ -186,6 +193,7 @@ std::vector<std::unique_ptr<AbiFunctions>> with_residual(const std::vector<syste
     for (auto* solved : {&copy.residual->qddot_by_q, &copy.residual->qddot_by_qdot, &copy.residual->M_inverse})
       solved->clear();
     copy.residual->pivots.clear();
+    if (!residual->M.empty()) copy.M = residual->M, copy.f = residual->f;
     add(copy, Ties::ascending);
     add(copy, Ties::descending);
   }

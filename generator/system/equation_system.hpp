@@ -73,6 +73,8 @@ struct Residual {
   // is not 0.
   std::vector<Ref> qddot_by_q, qddot_by_qdot, M_inverse;
   std::vector<symbolic::Pivot> pivots;
+  // The same equations, M qddot = f, and their solution, with most expressions in common: may be empty.
+  std::vector<Ref> M, f, qddot;
 };
 
 /// A state of first order, with derivative `rate`: declared by the model, or an integral of a function of time without

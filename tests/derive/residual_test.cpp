@@ -149,6 +149,13 @@ TEST_CASE("the residual of a tree of bodies is M qddot - f, and its derivatives 
     CHECK(difference_of(dag, residual->by_qdot, by_qdot) < as_good_as_exact);
     CHECK(difference_of(dag, product(dag, s.M, residual->qddot_by_q), negative(dag, by_q)) < as_good_as_exact);
     CHECK(difference_of(dag, product(dag, s.M, residual->qddot_by_qdot), negative(dag, by_qdot)) < as_good_as_exact);
+    CHECK(difference_of(dag, residual->M, s.M) < as_good_as_exact);
+    CHECK(difference_of(dag, residual->f, s.f) < as_good_as_exact);
+    std::vector<Ref> forces(n, dag.zero());
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j) forces[i] = dag.add(forces[i], dag.mul(s.M[i * n + j], residual->qddot[j]));
+    }
+    CHECK(difference_of(dag, forces, s.f) < as_good_as_exact);
     if (residual->M_inverse.empty()) continue;
     std::vector<Ref> identity(n * n, dag.zero());
     for (std::size_t i = 0; i < n; ++i) identity[i * n + i] = dag.one();

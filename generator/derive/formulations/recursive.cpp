@@ -12,7 +12,8 @@ namespace {
 
 /// The factorised mass matrix of the whole tree, without the rows that no freedom has.
 system::Solution factorised(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion) {
-  const BodyEquations equations = body_equations(dag, tree, motion);
+  const std::vector<BiasAcceleration> bias = bias_accelerations(dag, tree, motion, GivenAccelerations::without_own);
+  const BodyEquations equations = body_equations(dag, tree, motion, bias);
   const std::size_t n = equations.f.size();
   std::vector<std::size_t> used;
   for (const BodyLink& link : tree.links) {
@@ -28,6 +29,10 @@ system::Solution factorised(Dag& dag, const BodyTree& tree, const std::vector<Li
   const std::vector<Ref> u = factors.backward(factors.forward(f));
   system::Solution result{std::vector<Ref>(n, dag.zero()), {}, factors.pivots()};
   for (std::size_t i = 0; i < used.size(); ++i) result.qddot[used[i]] = u[i];
+  for (std::size_t l = 0; l < tree.links.size(); ++l) {
+    for (const Freedom& f : tree.links[l].freedoms)
+      result.qddot[f.index] = dag.add(result.qddot[f.index], bias[l].joint);
+  }
   return result;
 }
 

@@ -171,11 +171,11 @@ class Compliance {
       joints_[l].push_back(joint);
     }
     if (link.parent < 0) return;
-    const Mat3 force = to_parent_axes(dag_, link.rotation, B.force);
+    const Mat3 force = link.rotation.to_parent(dag_, B.force, false);
     RotatingResponse& to = rotating_[place(link.parent)];
     to.force = add(dag_, to.force, force);
     to.moment = add(dag_, to.moment,
-                    add(dag_, to_parent_axes(dag_, link.rotation, B.moment),
+                    add(dag_, link.rotation.to_parent(dag_, B.moment, false),
                         product(dag_, cross_matrix(dag_, link.offset), force)));
   }
 
@@ -209,7 +209,7 @@ class Compliance {
     }
     const RotationSequence back = link.rotation.reversed();
     P = back.to_parent(dag_, P, true);
-    Q = to_parent_axes(dag_, back, Q);
+    Q = back.to_parent(dag_, Q, false);
     S = back.to_parent(dag_, S, true);
     Mat6 result;
     for (std::size_t i = 0; i < 3; ++i) {

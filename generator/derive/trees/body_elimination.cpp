@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "derive/trees/body_elimination.hpp"
 
+#include <algorithm>
+#include <tuple>
+
 namespace eomgen::derive {
 namespace {
 
@@ -9,7 +12,10 @@ using symbolic::cross;
 class Elimination {
  public:
   Elimination(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion)
-      : dag_(dag), tree_(tree), motion_(motion) {}
+      : dag_(dag),
+        tree_(tree),
+        motion_(motion),
+        bias_(bias_accelerations(dag, tree, motion, GivenAccelerations::without_own)) {}
 
   system::Solution operator()() {
     inwards();
@@ -40,8 +46,7 @@ class Elimination {
     const BodyLink& link = tree_.links[l];
     Articulated body{link.inertia, cross_matrix(dag_, link.moment), zero_matrix(dag_), {}, {}};
     for (std::size_t k = 0; k < 3; ++k) body.M[k][k] = link.mass;
-    body.n = gyroscopic(dag_, link.inertia, motion_[l].w);
-    body.f = times(dag_, motion_[l].W, link.moment);
+    std::tie(body.n, body.f) = needed_forces(dag_, link, motion_[l], bias_[l]);
     return body;
   }
 
@@ -59,17 +64,25 @@ class Elimination {
   void eliminate(std::size_t l) {
     const BodyLink& link = tree_.links[l];
     Articulated& body = bodies_[l];
-    Vec3 moment{};
-    if (link.absolute) moment = joint_moment(dag_, link, tree_.Q);
+    std::vector<Ref> Q;
+    for (const Freedom& freedom : link.freedoms) Q.push_back(tree_.Q[freedom.index]);
+    if (link.absolute) {
+      const Vec3 moment = joint_moment(dag_, link, tree_.Q);
+      std::copy(moment.begin(), moment.end(), Q.begin());
+    }
+    if (link.free) {
+      const Vec3 force = force_on_origin(dag_, link, tree_.Q);
+      std::copy(force.begin(), force.end(), Q.begin() + 3);
+    }
     for (std::size_t j = 0; j < link.freedoms.size(); ++j) {
       const Freedom& freedom = link.freedoms[j];
-      const Ref Q = link.absolute ? moment[j] : tree_.Q[freedom.index];
       const Vec3 &s = freedom.angular, &v = freedom.linear;
       Eliminated e{
           s, v, {}, {}, symbolic::add(dag_, times(dag_, body.I, s), times(dag_, body.H, v)), {}, freedom.index};
       e.F = symbolic::add(dag_, times(dag_, transposed(body.H), s), times(dag_, body.M, v));
       e.D = dag_.add(dag_.add(dot(dag_, s, e.N), dot(dag_, v, e.F)), tree_.armature[freedom.index]);
-      e.r = dag_.sub(Q, dag_.add(dot(dag_, s, body.n), dot(dag_, v, body.f)));
+      const Ref own = dag_.mul(tree_.armature[freedom.index], bias_[l].joint);
+      e.r = dag_.sub(dag_.sub(Q[j], own), dag_.add(dot(dag_, s, body.n), dot(dag_, v, body.f)));
       result_.pivots.push_back({e.D, dag_.zero()});
       reduce(body.I, e.N, e.N, e.D, true);
       reduce(body.H, e.N, e.F, e.D, false);
@@ -77,7 +90,7 @@ class Elimination {
       const Ref rate = dag_.div(e.r, e.D);
       body.n = symbolic::add(dag_, body.n, symbolic::scale(dag_, rate, e.N));
       body.f = symbolic::add(dag_, body.f, symbolic::scale(dag_, rate, e.F));
-      if (dag_.is_zero(tree_.armature[freedom.index])) clear(body, s, v, Q);
+      if (dag_.is_zero(tree_.armature[freedom.index])) clear(body, s, v, Q[j]);
       eliminated_[l].push_back(e);
     }
   }
@@ -102,15 +115,12 @@ class Elimination {
     if (!link.is_carried_by_parent()) {  // the parent's rotation moves only the origin
       body.I = body.H = zero_matrix(dag_);
       if (!link.relative) body.n = symbolic::zero_vector(dag_);
-    } else {
-      body.n = symbolic::add(dag_, body.n, times(dag_, body.I, motion_[l].bias));
-      body.f = symbolic::add(dag_, body.f, times(dag_, transposed(body.H), motion_[l].bias));
     }
     body.I = link.rotation.to_parent(dag_, body.I, true);
     body.H = link.rotation.to_parent(dag_, body.H, false);
     body.M = link.rotation.to_parent(dag_, body.M, true);
-    body.n = symbolic::add(dag_, link.rotation.to_parent(dag_, body.n), times(dag_, body.H, motion_[l].origin_bias));
-    body.f = symbolic::add(dag_, link.rotation.to_parent(dag_, body.f), times(dag_, body.M, motion_[l].origin_bias));
+    body.n = link.rotation.to_parent(dag_, body.n);
+    body.f = link.rotation.to_parent(dag_, body.f);
     const Mat3 X = cross_matrix(dag_, link.offset), XM = product(dag_, X, body.M), HX = product(dag_, body.H, X);
     const Mat3 XMX = product(dag_, XM, X);
     to.M = add(dag_, to.M, body.M);
@@ -127,17 +137,27 @@ class Elimination {
 
   void accelerate(std::size_t l) {
     const BodyLink& link = tree_.links[l];
-    Vec3 alpha = symbolic::zero_vector(dag_), a = symbolic::scale(dag_, dag_.integer(-1), tree_.gravity);
+    Vec3 alpha = symbolic::zero_vector(dag_), a = alpha;
     if (link.parent >= 0) {
       const auto& [inner_alpha, inner_a] = acceleration_[place(link.parent)];
       a = symbolic::add(dag_, inner_a, cross(dag_, inner_alpha, link.offset));
       if (link.is_carried_by_parent()) alpha = link.rotation.to_own_axes(dag_, inner_alpha);
     }
-    a = link.rotation.to_own_axes(dag_, symbolic::add(dag_, a, motion_[l].origin_bias));
-    if (link.is_carried_by_parent()) alpha = symbolic::add(dag_, alpha, motion_[l].bias);
+    a = link.rotation.to_own_axes(dag_, a);
     for (auto e = eliminated_[l].rbegin(); e != eliminated_[l].rend(); ++e) {
+      const std::size_t k = unit_axis(dag_, e->angular), m = unit_axis(dag_, e->linear);
+      const bool pin = k < 3 && is_zero(dag_, e->linear), slider = m < 3 && is_zero(dag_, e->angular);
+      if (dag_.is_zero(tree_.armature[e->index]) && (pin || slider)) {
+        // N or F along the freedom is D: the acceleration there follows from the others.
+        Ref& along = pin ? alpha[k] : a[m];
+        const Ref before = along;
+        along = dag_.zero();
+        along = dag_.div(dag_.sub(e->r, dag_.add(dot(dag_, e->N, alpha), dot(dag_, e->F, a))), e->D);
+        result_.qddot[e->index] = dag_.add(dag_.sub(along, before), bias_[l].joint);
+        continue;
+      }
       const Ref u = dag_.div(dag_.sub(e->r, dag_.add(dot(dag_, e->N, alpha), dot(dag_, e->F, a))), e->D);
-      result_.qddot[e->index] = u;
+      result_.qddot[e->index] = dag_.add(u, bias_[l].joint);
       alpha = symbolic::add(dag_, alpha, symbolic::scale(dag_, u, e->angular));
       a = symbolic::add(dag_, a, symbolic::scale(dag_, u, e->linear));
     }
@@ -147,6 +167,7 @@ class Elimination {
   Dag& dag_;
   const BodyTree& tree_;
   const std::vector<LinkMotion>& motion_;
+  std::vector<BiasAcceleration> bias_;
   system::Solution result_;
   std::vector<Articulated> bodies_;
   std::vector<std::vector<Eliminated>> eliminated_;
@@ -154,13 +175,6 @@ class Elimination {
 };
 
 }  // namespace
-
-std::size_t unit_axis(const Dag& dag, const Vec3& v) {
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (dag.is_one(v[k]) && dag.is_zero(v[(k + 1) % 3]) && dag.is_zero(v[(k + 2) % 3])) return k;
-  }
-  return 3;
-}
 
 ArticulatedTree articulated_bodies(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion) {
   return Elimination(dag, tree, motion).bodies();

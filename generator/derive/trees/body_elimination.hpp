@@ -33,9 +33,6 @@ struct ArticulatedTree {
 
 ArticulatedTree articulated_bodies(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion);
 
-/// The index of the axis k if v is the unit vector along it; otherwise 3.
-std::size_t unit_axis(const Dag& dag, const Vec3& v);
-
 /// The derivatives of the rates (or of the angular velocities in their place), and the pivots.
 system::Solution body_accelerations(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion);
 

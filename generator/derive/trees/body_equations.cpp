@@ -5,14 +5,47 @@
 #include <set>
 
 #include "derive/trees/body_recursion.hpp"
+#include "derive/trees/tree_reduction.hpp"
 #include "mechanics/vanishes.hpp"
 
 namespace eomgen::derive {
 namespace {
 
-FullEquations in_coordinates(Dag& dag, const BodyTree& tree) {
-  BodyEquations equations = body_equations(dag, tree, link_motions(dag, tree));
-  return {std::move(equations.M), std::move(equations.f)};
+FullEquations in_coordinates(Dag& dag, const BodyTree& given) {
+  std::optional<FullEquations> best;
+  std::size_t least = 0;
+  for (const BodyTree& tree : equivalent_trees(dag, given)) {
+    const std::vector<LinkMotion> motion = link_motions(dag, tree);
+    const std::vector<BiasAcceleration> bias = bias_accelerations(dag, tree, motion, GivenAccelerations::zero);
+    BodyEquations equations = body_equations(dag, tree, motion, bias);
+    std::vector<Ref> all = equations.M;
+    all.insert(all.end(), equations.f.begin(), equations.f.end());
+    const std::size_t count = count_operations(dag, all);
+    if (best && count >= least) continue;
+    best = {std::move(equations.M), std::move(equations.f)};
+    least = count;
+  }
+  return *best;
+}
+
+/// The accelerations of the coordinates from the equivalent tree with the fewest operations.
+system::Solution cheapest(Dag& dag, const BodyTree& given, BodySolve solve) {
+  std::optional<system::Solution> best;
+  std::size_t least = 0;
+  const auto attempt = [&](const BodyTree& tree) {
+    const std::vector<LinkMotion> motion = link_motions(dag, tree);
+    system::Solution solution = solve(dag, tree, motion);
+    solution.qddot = coordinate_accelerations(dag, tree, motion, solution.qddot, solution.pivots);
+    const std::size_t count = count_operations(dag, solution.qddot);
+    if (best && count >= least) return;
+    best = std::move(solution);
+    least = count;
+  };
+  for (const BodyTree& tree : equivalent_trees(dag, given)) {
+    attempt(tree);
+    if (const auto along = along_own_axes_of_free_bodies(dag, tree)) attempt(*along);
+  }
+  return *best;
 }
 
 /// The active constraints are the length constraints of Euler parameters that angular velocities replace.
@@ -68,9 +101,7 @@ std::optional<system::EquationSystem> equations_of_bodies(Mechanics& m, system::
   }
   use_angular_velocities(dag, *tree);
   if (!m.contacts.empty() || !only_lengths(m, *tree)) return s;
-  const std::vector<LinkMotion> rates = link_motions(dag, *tree);
-  system::Solution solution = solve(dag, *tree, rates);
-  solution.qddot = coordinate_accelerations(dag, *tree, rates, solution.qddot, solution.pivots);
+  system::Solution solution = cheapest(dag, *tree, solve);
   solution.lambda = multipliers_of_lengths(m, *tree, *s);
   s->solution = std::move(solution);
   return s;

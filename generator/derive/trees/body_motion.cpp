@@ -101,7 +101,29 @@ void parameter_rates(Dag& dag, const BodyLink& link, const Vec3& alpha, std::vec
   }
 }
 
+/// J alpha + w x J w of a symmetric J.
+Vec3 bias_moment(Dag& dag, const Mat3& J, const LinkMotion& motion, const BiasAcceleration& bias) {
+  Vec3 result;
+  const Vec3& w = motion.w;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    const auto term = [&](Ref inertia, Ref rates) { result[i] = dag.add(result[i], dag.mul(inertia, rates)); };
+    result[i] = dag.add(dag.mul(J[i][i], bias.alpha[i]), dag.mul(dag.sub(J[k][k], J[j][j]), dag.mul(w[j], w[k])));
+    term(J[j][k], dag.sub(dag.mul(w[j], w[j]), dag.mul(w[k], w[k])));
+    term(J[i][k], bias.U[j][i]);
+    term(dag.neg(J[i][j]), bias.U[k][i]);
+  }
+  return result;
+}
+
 }  // namespace
+
+std::size_t unit_axis(const Dag& dag, const Vec3& v) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (dag.is_one(v[k]) && dag.is_zero(v[(k + 1) % 3]) && dag.is_zero(v[(k + 2) % 3])) return k;
+  }
+  return 3;
+}
 
 std::vector<LinkMotion> link_motions(Dag& dag, const BodyTree& tree) {
   const Vec3 none = symbolic::zero_vector(dag);
@@ -127,24 +149,53 @@ std::vector<LinkMotion> link_motions(Dag& dag, const BodyTree& tree) {
       motion.W[i][i] = dag.neg(dag.add(ww[(i + 1) % 3][(i + 1) % 3], ww[(i + 2) % 3][(i + 2) % 3]));
     }
     const Vec3 twice = symbolic::scale(dag, dag.integer(2), cross(dag, parent.w, link.offset_rate));
-    motion.origin_bias =
-        symbolic::add(dag, times(dag, parent.W, link.offset), symbolic::add(dag, twice, link.offset_bias));
+    motion.slide_bias = symbolic::add(dag, twice, link.offset_bias);
     result.push_back(motion);
   }
   return result;
 }
 
-Vec3 gyroscopic(Dag& dag, const Mat3& J, const Vec3& w) {
-  Vec3 result;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-    const auto term = [&](Ref inertia, Ref rates) { result[i] = dag.add(result[i], dag.mul(inertia, rates)); };
-    result[i] = dag.mul(dag.sub(J[k][k], J[j][j]), dag.mul(w[j], w[k]));
-    term(J[j][k], dag.sub(dag.mul(w[j], w[j]), dag.mul(w[k], w[k])));
-    term(J[i][k], dag.mul(w[i], w[j]));
-    term(dag.neg(J[i][j]), dag.mul(w[i], w[k]));
+std::vector<BiasAcceleration> bias_accelerations(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion,
+                                                 GivenAccelerations given) {
+  const Vec3 none = symbolic::zero_vector(dag);
+  std::vector<BiasAcceleration> result;
+  for (std::size_t l = 0; l < tree.links.size(); ++l) {
+    const BodyLink& link = tree.links[l];
+    BiasAcceleration bias{none, symbolic::scale(dag, dag.integer(-1), tree.gravity), motion[l].W, dag.zero()};
+    if (link.parent >= 0) {
+      const BiasAcceleration& parent = result[static_cast<std::size_t>(link.parent)];
+      bias.a = symbolic::add(dag, parent.a, times(dag, parent.U, link.offset));
+      if (link.is_carried_by_parent()) bias.alpha = link.rotation.to_own_axes(dag, parent.alpha);
+    }
+    bias.a = link.rotation.to_own_axes(dag, symbolic::add(dag, bias.a, motion[l].slide_bias));
+    if (link.free) bias.a = none;
+    if (link.is_carried_by_parent()) bias.alpha = symbolic::add(dag, bias.alpha, motion[l].bias);
+    if (given == GivenAccelerations::without_own && link.freedoms.size() == 1) {
+      const Freedom& freedom = link.freedoms[0];
+      const bool turns = is_zero(dag, freedom.linear), slides = is_zero(dag, freedom.angular);
+      const std::size_t k = unit_axis(dag, turns ? freedom.angular : freedom.linear);
+      if (k < 3 && turns != slides) {
+        Ref& own = turns ? bias.alpha[k] : bias.a[k];
+        bias.joint = dag.neg(own);
+        own = dag.zero();
+      }
+    }
+    bias.U = add(dag, bias.U, cross_matrix(dag, bias.alpha));
+    result.push_back(bias);
   }
   return result;
+}
+
+std::pair<Vec3, Vec3> needed_forces(Dag& dag, const BodyLink& link, const LinkMotion& motion,
+                                    const BiasAcceleration& bias) {
+  const Vec3 moment = bias_moment(dag, link.inertia, motion, bias);
+  return {symbolic::add(dag, moment, cross(dag, link.moment, bias.a)),
+          symbolic::add(dag, symbolic::scale(dag, link.mass, bias.a), times(dag, bias.U, link.moment))};
+}
+
+Vec3 force_on_origin(Dag& dag, const BodyLink& link, const std::vector<Ref>& Q) {
+  return link.rotation.to_own_axes(dag,
+                                   {Q[link.freedoms[3].index], Q[link.freedoms[4].index], Q[link.freedoms[5].index]});
 }
 
 Vec3 joint_moment(Dag& dag, const BodyLink& link, const std::vector<Ref>& Q) {
@@ -190,6 +241,11 @@ std::vector<Ref> coordinate_accelerations(Dag& dag, const BodyTree& tree, const 
       for (const Freedom& f : link.freedoms) sum = symbolic::add(dag, sum, symbolic::scale(dag, u[f.index], f.angular));
       alpha.push_back(sum);
       continue;
+    }
+    if (link.free) {
+      const Vec3 own{u[link.freedoms[3].index], u[link.freedoms[4].index], u[link.freedoms[5].index]};
+      const Vec3 a = symbolic::add(dag, link.rotation.to_parent(dag, own), tree.gravity);
+      for (std::size_t k = 0; k < 3; ++k) result[link.freedoms[3 + k].index] = a[k];
     }
     alpha.push_back({u[link.freedoms[0].index], u[link.freedoms[1].index], u[link.freedoms[2].index]});
     if (const std::optional<EulerAngles> angles = euler_angles(dag, link)) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "derive/trees/body_recursion.hpp"
 
+#include <tuple>
+
 namespace eomgen::derive {
 namespace {
 
@@ -13,8 +15,9 @@ struct Momentum {
 
 class Recursion {
  public:
-  Recursion(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion)
-      : dag_(dag), tree_(tree), motion_(motion) {}
+  Recursion(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion,
+            const std::vector<BiasAcceleration>& bias)
+      : dag_(dag), tree_(tree), motion_(motion), bias_(bias) {}
 
   BodyEquations operator()() {
     const std::size_t n = tree_.Q.size();
@@ -30,26 +33,13 @@ class Recursion {
  private:
   static std::size_t place(int link) { return static_cast<std::size_t>(link); }
 
-  /// At zero accelerations of the coordinates: forces and moments that each link needs, from the tips inwards.
+  /// At the given accelerations of the coordinates: forces and moments that each link needs, from the tips inwards.
   void forces() {
     const std::size_t count = tree_.links.size();
     const Vec3 none = symbolic::zero_vector(dag_);
-    std::vector<Vec3> alpha(count, none), F(count), N(count);
+    std::vector<Vec3> F(count), N(count);
     for (std::size_t l = 0; l < count; ++l) {
-      const BodyLink& link = tree_.links[l];
-      Vec3 a = symbolic::scale(dag_, dag_.integer(-1), tree_.gravity);
-      if (link.parent >= 0)
-        a = symbolic::add(dag_, acceleration_[place(link.parent)], cross(dag_, alpha[place(link.parent)], link.offset));
-      a = link.rotation.to_own_axes(dag_, symbolic::add(dag_, a, motion_[l].origin_bias));
-      acceleration_.push_back(a);
-      if (link.is_carried_by_parent()) alpha[l] = motion_[l].bias;
-      if (link.is_carried_by_parent() && link.parent >= 0)
-        alpha[l] = symbolic::add(dag_, link.rotation.to_own_axes(dag_, alpha[place(link.parent)]), alpha[l]);
-      const Vec3 angular =
-          symbolic::add(dag_, cross(dag_, alpha[l], link.moment), times(dag_, motion_[l].W, link.moment));
-      F[l] = symbolic::add(dag_, symbolic::scale(dag_, link.mass, a), angular);
-      N[l] = symbolic::add(dag_, cross(dag_, link.moment, a), gyroscopic(dag_, link.inertia, motion_[l].w));
-      N[l] = symbolic::add(dag_, N[l], times(dag_, link.inertia, alpha[l]));
+      std::tie(N[l], F[l]) = needed_forces(dag_, tree_.links[l], motion_[l], bias_[l]);
     }
     for (std::size_t l = count; l-- > 0;) {
       const BodyLink& link = tree_.links[l];
@@ -57,9 +47,12 @@ class Recursion {
       if (link.absolute) {
         passed = joint_moment(dag_, link, tree_.Q);
         for (std::size_t k = 0; k < 3; ++k) result_.f[link.freedoms[k].index] = passed[k];
+        const Vec3 force = link.free ? force_on_origin(dag_, link, tree_.Q) : none;
+        for (std::size_t k = 3; k < link.freedoms.size(); ++k) result_.f[link.freedoms[k].index] = force[k - 3];
       }
       for (const Freedom& f : link.freedoms) {
-        const Ref needed = dag_.add(dot(dag_, f.angular, N[l]), dot(dag_, f.linear, F[l]));
+        const Ref own = dag_.mul(tree_.armature[f.index], bias_[l].joint);
+        const Ref needed = dag_.add(dag_.add(dot(dag_, f.angular, N[l]), dot(dag_, f.linear, F[l])), own);
         result_.f[f.index] = dag_.sub(result_.f[f.index], needed);
       }
       if (link.parent < 0) continue;
@@ -96,8 +89,8 @@ class Recursion {
   Dag& dag_;
   const BodyTree& tree_;
   const std::vector<LinkMotion>& motion_;
+  const std::vector<BiasAcceleration>& bias_;
   BodyEquations result_;
-  std::vector<Vec3> acceleration_;
   std::vector<Composite> composite_;
 };
 
@@ -129,8 +122,9 @@ std::vector<Composite> composite_bodies(Dag& dag, const BodyTree& tree) {
   return composite;
 }
 
-BodyEquations body_equations(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion) {
-  return Recursion(dag, tree, motion)();
+BodyEquations body_equations(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion,
+                             const std::vector<BiasAcceleration>& bias) {
+  return Recursion(dag, tree, motion, bias)();
 }
 
 }  // namespace eomgen::derive

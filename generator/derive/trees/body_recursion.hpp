@@ -24,6 +24,8 @@ struct Composite {
 /// One entry per link.
 std::vector<Composite> composite_bodies(Dag& dag, const BodyTree& tree);
 
-BodyEquations body_equations(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion);
+/// M and f with M qddot = f, or M (qddot - given) = f with other accelerations than 0.
+BodyEquations body_equations(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion,
+                             const std::vector<BiasAcceleration>& bias);
 
 }  // namespace eomgen::derive

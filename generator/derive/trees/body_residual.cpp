@@ -4,8 +4,10 @@
 #include <algorithm>
 
 #include "derive/trees/body_compliance.hpp"
+#include "derive/trees/body_elimination.hpp"
 #include "derive/trees/body_recursion.hpp"
 #include "derive/trees/link_dynamics.hpp"
+#include "derive/trees/tree_reduction.hpp"
 
 namespace eomgen::derive {
 namespace {
@@ -63,7 +65,7 @@ class Rows {
       const Vec3 momentum =
           plus(link.rotation.to_parent(dag_, flow_[l].momentum), symbolic::scale(dag_, composite_[l].mass, v));
       to.momentum = plus(to.momentum, momentum);
-      const Mat3 turned = to_parent_axes(dag_, link.rotation, flow_[l].matrix);
+      const Mat3 turned = link.rotation.to_parent(dag_, flow_[l].matrix, false);
       for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t k = 0; k < 3; ++k) {
           const Ref moved = dag_.add(dag_.mul(momentum[i], link.offset[k]), dag_.mul(v[i], h[k]));
@@ -152,6 +154,45 @@ class Rows {
   std::vector<Ref> by_q_, by_qdot_;
 };
 
+system::Residual residual_of(Mechanics& m, const BodyTree& tree) {
+  Dag& dag = *m.dag;
+  const std::vector<LinkMotion> motion = link_motions(dag, tree);
+  const std::vector<LinkDynamics> dynamics = link_dynamics(m, tree, motion);
+  system::Residual residual;
+  residual.applied = tree.Q;
+  residual.inertia.assign(tree.Q.size(), dag.zero());
+  for (std::size_t l = 0; l < dynamics.size(); ++l) {
+    for (const Freedom& f : tree.links[l].freedoms) {
+      const Ref own = dag.mul(tree.armature[f.index], dag.symbol({SymbolKind::coordinate, m.free[f.index], 2}));
+      residual.inertia[f.index] = dag.add(along(dag, f, dynamics[l].wrench), own);
+    }
+  }
+  Rows(dag, tree, motion, dynamics)(residual);
+  add_compliance(dag, tree, motion, dynamics, residual);
+  BodyEquations equations =
+      body_equations(dag, tree, motion, bias_accelerations(dag, tree, motion, GivenAccelerations::zero));
+  residual.M = std::move(equations.M);
+  residual.f = std::move(equations.f);
+  residual.qddot = body_accelerations(dag, tree, motion).qddot;
+  return residual;
+}
+
+/// Without the applied forces.
+std::vector<Ref> inertial(const system::Residual& residual) {
+  std::vector<Ref> result;
+  for (const auto* list : {&residual.inertia, &residual.by_q, &residual.by_qdot, &residual.qddot_by_q,
+                           &residual.qddot_by_qdot, &residual.M_inverse})
+    result.insert(result.end(), list->begin(), list->end());
+  return result;
+}
+
+std::size_t cost(const Dag& dag, const system::Residual& residual) {
+  std::vector<Ref> all = inertial(residual);
+  for (const auto* list : {&residual.M, &residual.f, &residual.qddot})
+    all.insert(all.end(), list->begin(), list->end());
+  return count_operations(dag, all);
+}
+
 }  // namespace
 
 std::optional<system::Residual> body_residual(Mechanics& m) {
@@ -161,30 +202,18 @@ std::optional<system::Residual> body_residual(Mechanics& m) {
   for (const BodyLink& link : tree->links) {
     if (!link.relative || !link.parameters.empty()) return std::nullopt;
   }
-  const std::vector<LinkMotion> motion = link_motions(dag, *tree);
-  const std::vector<LinkDynamics> dynamics = link_dynamics(m, *tree, motion);
-  system::Residual residual;
-  residual.applied = tree->Q;
-  residual.inertia.assign(tree->Q.size(), dag.zero());
-  for (std::size_t l = 0; l < dynamics.size(); ++l) {
-    for (const Freedom& f : tree->links[l].freedoms) {
-      const Ref own = dag.mul(tree->armature[f.index], dag.symbol({SymbolKind::coordinate, m.free[f.index], 2}));
-      residual.inertia[f.index] = dag.add(along(dag, f, dynamics[l].wrench), own);
-    }
-  }
-  Rows(dag, *tree, motion, dynamics)(residual);
-  add_compliance(dag, *tree, motion, dynamics, residual);
-  const auto lists = {&residual.inertia,    &residual.by_q,          &residual.by_qdot,
-                      &residual.qddot_by_q, &residual.qddot_by_qdot, &residual.M_inverse};
-  std::vector<Ref> smooth;
-  for (const auto* list : lists) smooth.insert(smooth.end(), list->begin(), list->end());
-  if (dag.has_kinks(smooth)) return std::nullopt;
+  system::Residual residual = residual_of(m, *tree);
+  system::Residual regrouped = residual_of(m, with_regrouped_inertias(dag, *tree));
+  if (cost(dag, regrouped) < cost(dag, residual)) residual = std::move(regrouped);
+  if (dag.has_kinks(inertial(residual))) return std::nullopt;
   symbolic::Substitution imposed = constraint_substitution(m), written = time_function_substitution(m);
   const auto finish = [&](std::vector<Ref>& list) {
     for (Ref& r : list) r = written(imposed(r));
   };
-  for (auto* list : lists) finish(*list);
-  finish(residual.applied);
+  for (auto* list :
+       {&residual.inertia, &residual.by_q, &residual.by_qdot, &residual.qddot_by_q, &residual.qddot_by_qdot,
+        &residual.M_inverse, &residual.M, &residual.f, &residual.qddot, &residual.applied})
+    finish(*list);
   for (symbolic::Pivot& pivot : residual.pivots) pivot.pivot = written(imposed(pivot.pivot));
   return residual;
 }

@@ -26,6 +26,7 @@ struct BodyLink {
   RotationSequence rotation;
   bool relative = true;   // axes relative to the parent; otherwise E1, E2, E3 on a rotating parent
   bool absolute = false;  // the angular velocity replaces the rates of its three (four) coordinates of rotation
+  bool free = false;      // and the acceleration of the origin less gravity, along the own axes, those along E1, E2, E3
   std::vector<Freedom> freedoms;
   std::vector<Freedom> angles;  // of an absolute link: its coordinates, which the three axes replace in `freedoms`
   std::vector<Ref> parameters;  // 4 Euler parameters, then their 4 rates, in the order of `angles`; otherwise empty

@@ -42,12 +42,12 @@ class Derivation {
     Vec3 alpha = none(), a = symbolic::scale(dag_, dag_.integer(-1), tree_.gravity), w = none();
     if (link.parent >= 0) {
       alpha = alpha_[place(link.parent)];
-      a = plus(a_[place(link.parent)], x(alpha, link.offset));
+      a = plus(a_[place(link.parent)], times(dag_, U_[place(link.parent)], link.offset));
       w = motion_[place(link.parent)].w;
     }
     carried_alpha_.push_back(link.rotation.to_own_axes(dag_, alpha));
     carried_w_.push_back(link.rotation.to_own_axes(dag_, w));
-    carried_a_.push_back(link.rotation.to_own_axes(dag_, plus(a, motion_[l].origin_bias)));
+    carried_a_.push_back(link.rotation.to_own_axes(dag_, plus(a, motion_[l].slide_bias)));
     alpha = plus(carried_alpha_.back(), motion_[l].bias);
     a = carried_a_.back();
     for (const Freedom& f : link.freedoms) {
@@ -56,6 +56,7 @@ class Derivation {
     }
     alpha_.push_back(alpha);
     a_.push_back(a);
+    U_.push_back(add(dag_, motion_[l].W, cross_matrix(dag_, alpha)));
     joint_w_.push_back(none());
     joint_bias_.push_back(none());
     for (const RotationStep& step : link.rotation.steps) {
@@ -71,10 +72,7 @@ class Derivation {
   void collect_forces() {
     for (std::size_t l = 0; l < tree_.links.size(); ++l) {
       const BodyLink& link = tree_.links[l];
-      const Vec3 force = plus(symbolic::scale(dag_, link.mass, a_[l]),
-                              plus(x(alpha_[l], link.moment), times(dag_, motion_[l].W, link.moment)));
-      Vec3 moment = plus(x(link.moment, a_[l]), gyroscopic(dag_, link.inertia, motion_[l].w));
-      moment = plus(moment, times(dag_, link.inertia, alpha_[l]));
+      const auto [moment, force] = needed_forces(dag_, link, motion_[l], {alpha_[l], a_[l], U_[l], dag_.zero()});
       result_[l].wrench = {moment, force};
     }
     for (std::size_t l = tree_.links.size(); l-- > 0;) {
@@ -123,8 +121,7 @@ class Derivation {
         plus(plus(x(carried_alpha_[l], s), x(w, turned)), plus(plus(twice(x(w, own)), bias), x(joint_w_[l], own)));
     Vec3 a = plus(twice(x(parent_w(l), derivative(by, link.offset_rate))), derivative(by, link.offset_bias));
     const Vec3 v = derivative(by, link.offset);
-    if (link.parent >= 0)
-      a = plus(a, plus(x(alpha_[place(link.parent)], v), times(dag_, motion_[place(link.parent)].W, v)));
+    if (link.parent >= 0) a = plus(a, times(dag_, U_[place(link.parent)], v));
     result.a = plus(plus(x(carried_a_[l], s), link.rotation.to_own_axes(dag_, a)), slid);
     return result;
   }
@@ -152,6 +149,7 @@ class Derivation {
   std::vector<symbolic::Derivation> by_, by_rate_;
   // Per link: along its axes.
   std::vector<Vec3> alpha_, a_;                              // accelerations
+  std::vector<Mat3> U_;                                      // r -> alpha x r + w x (w x r)
   std::vector<Vec3> carried_w_, carried_alpha_, carried_a_;  // the parts of the parent
   std::vector<Vec3> joint_w_, joint_bias_;                   // at a parent at rest
 };
@@ -161,31 +159,6 @@ class Derivation {
 Vec3 Flow::moment(Dag& dag, const Vec3& omega) const {
   const Ref trace = dag.add(dag.add(matrix[0][0], matrix[1][1]), matrix[2][2]);
   return symbolic::subtract(dag, symbolic::scale(dag, trace, omega), times(dag, matrix, omega));
-}
-
-Mat3 to_parent_axes(Dag& dag, const RotationSequence& rotation, Mat3 a) {
-  for (auto step = rotation.steps.rbegin(); step != rotation.steps.rend(); ++step) {
-    const std::size_t i = axis_of(dag, step->R);
-    if (i == 3) {
-      a = product(dag, product(dag, transposed(step->R), a), step->R);
-      continue;
-    }
-    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-    const Ref c = step->R[j][j], s = step->R[j][k];
-    const Ref sum = dag.add(a[j][k], a[k][j]);
-    const Ref w = dag.sub(dag.mul(s, dag.sub(a[k][k], a[j][j])), dag.mul(c, sum));
-    Mat3 result = a;
-    result[j][j] = dag.add(a[j][j], dag.mul(s, w));
-    result[k][k] = dag.sub(a[k][k], dag.mul(s, w));
-    result[j][k] = dag.neg(dag.add(dag.mul(c, w), a[k][j]));
-    result[k][j] = dag.neg(dag.add(dag.mul(c, w), a[j][k]));
-    result[i][j] = dag.sub(dag.mul(c, a[i][j]), dag.mul(s, a[i][k]));
-    result[i][k] = dag.add(dag.mul(s, a[i][j]), dag.mul(c, a[i][k]));
-    result[j][i] = dag.sub(dag.mul(c, a[j][i]), dag.mul(s, a[k][i]));
-    result[k][i] = dag.add(dag.mul(s, a[j][i]), dag.mul(c, a[k][i]));
-    a = result;
-  }
-  return a;
 }
 
 Ref along(Dag& dag, const Freedom& freedom, const Wrench& wrench) {

@@ -44,9 +44,6 @@ struct LinkDynamics {
 std::vector<LinkDynamics> link_dynamics(Mechanics& mechanics, const BodyTree& tree,
                                         const std::vector<LinkMotion>& motion);
 
-/// R^T a R of any matrix along the link's axes; the double angle as in RotationSequence for steps about one axis.
-Mat3 to_parent_axes(Dag& dag, const RotationSequence& rotation, Mat3 a);
-
 Ref along(Dag& dag, const Freedom& freedom, const Wrench& wrench);
 /// The same wrench about the parent's origin, along its axes.
 Wrench to_parent(Dag& dag, const BodyLink& link, const Wrench& wrench);

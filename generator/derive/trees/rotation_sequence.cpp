@@ -65,6 +65,24 @@ Mat3 about_axis_to_parent(Dag& dag, const Mat3& R, const Mat3& a, std::size_t i)
   return result;
 }
 
+/// R^T A R of any matrix, with the double angle likewise.
+Mat3 any_about_axis_to_parent(Dag& dag, const Mat3& R, const Mat3& a, std::size_t i) {
+  const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+  const Ref c = R[j][j], s = R[j][k];
+  const Ref sum = dag.add(a[j][k], a[k][j]);
+  const Ref w = dag.sub(dag.mul(s, dag.sub(a[k][k], a[j][j])), dag.mul(c, sum));
+  Mat3 result = a;
+  result[j][j] = dag.add(a[j][j], dag.mul(s, w));
+  result[k][k] = dag.sub(a[k][k], dag.mul(s, w));
+  result[j][k] = dag.neg(dag.add(dag.mul(c, w), a[k][j]));
+  result[k][j] = dag.neg(dag.add(dag.mul(c, w), a[j][k]));
+  result[i][j] = dag.sub(dag.mul(c, a[i][j]), dag.mul(s, a[i][k]));
+  result[i][k] = dag.add(dag.mul(s, a[i][j]), dag.mul(c, a[i][k]));
+  result[j][i] = dag.sub(dag.mul(c, a[j][i]), dag.mul(s, a[k][i]));
+  result[k][i] = dag.add(dag.mul(s, a[j][i]), dag.mul(c, a[k][i]));
+  return result;
+}
+
 }  // namespace
 
 Vec3 RotationSequence::to_own_axes(Dag& dag, Vec3 v) const {
@@ -80,8 +98,9 @@ Vec3 RotationSequence::to_parent(Dag& dag, Vec3 v) const {
 Mat3 RotationSequence::to_parent(Dag& dag, Mat3 a, bool symmetric) const {
   for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
     const std::size_t axis = axis_of(dag, step->R);
-    if (symmetric && axis < 3) {
-      a = about_axis_to_parent(dag, step->R, a, axis);
+    if (axis < 3 && dag.is_one(step->R[(axis + 1) % 3][(axis + 1) % 3])) continue;  // the same axes
+    if (axis < 3 && !dag.is_constant(step->R[(axis + 1) % 3][(axis + 1) % 3])) {
+      a = symmetric ? about_axis_to_parent(dag, step->R, a, axis) : any_about_axis_to_parent(dag, step->R, a, axis);
       continue;
     }
     a = product(dag, product(dag, transposed(step->R), a), step->R);
