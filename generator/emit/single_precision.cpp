@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <eom/output/decimal.hpp>
 #include <limits>
 
 #include "emit/self_test.hpp"
@@ -95,7 +95,7 @@ double to_single(double value) {
   require_place(value);
   const std::string text = decimal(value);
   float number = 0;
-  std::from_chars(text.data(), text.data() + text.size(), number);
+  eom::read_decimal(text, number);
   return static_cast<double>(number);
 }
 

@@ -2,9 +2,10 @@
 #include "import/mesh.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <charconv>
 #include <cmath>
+#include <cstring>
+#include <eom/output/decimal.hpp>
 #include <map>
 #include <set>
 #include <string_view>
@@ -42,7 +43,7 @@ class Words {
     std::string_view word = next();
     if (word.starts_with('+')) word.remove_prefix(1);
     double value = 0;
-    const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), value);
+    const auto [end, problem] = eom::read_decimal(word, value);
     if (problem != std::errc() || end != word.data() + word.size()) return std::nullopt;
     return value;
   }
@@ -77,8 +78,12 @@ bool read_binary_stl(const std::string& bytes, Mesh& mesh) {
   for (std::size_t at = stl_head; at + stl_triangle <= bytes.size(); at += stl_triangle) {
     for (std::size_t corner = 0; corner < 3; ++corner) {
       Corner p{};
-      for (std::size_t k = 0; k < 3; ++k)
-        p[k] = std::bit_cast<float>(word_at(bytes, at + 12 + 12 * corner + 4 * k));  // after the normal
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t word = word_at(bytes, at + 12 + 12 * corner + 4 * k);  // after the normal
+        float value = 0;
+        std::memcpy(&value, &word, sizeof value);
+        p[k] = value;
+      }
       if (!is_finite(p)) return false;
       mesh.points.push_back(p);
     }

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <eom/output/decimal.hpp>
 #include <string_view>
 
 #include "model/content_hash.hpp"
@@ -121,7 +121,7 @@ class CsvReader {
     double value = 0;
     std::string_view text = field.text;
     if (text.starts_with('+')) text.remove_prefix(1);
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const auto [end, problem] = eom::read_decimal(text, value);
     if (problem != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
       fail(field,
            field.text.empty() ? "a value is missing"

@@ -2,7 +2,7 @@
 // Findings beyond the equations: conserved quantities, Routh's reduction, steady motions, singular sets, the
 // certificate.
 #include <array>
-#include <charconv>
+#include <eom/output/decimal.hpp>
 
 #include "print/article_parts.hpp"
 
@@ -17,9 +17,7 @@ namespace {
 /// 1.5e-07 -> 1.5\cdot 10^{-7}
 std::string number_in_latex(double value) {
   std::array<char, 32> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value == 0 ? 0.0 : value,
-                                 std::chars_format::general, 6)
-                       .ptr;
+  const auto end = eom::write_decimal(digits.data(), digits.data() + digits.size(), value == 0 ? 0.0 : value, 6);
   std::string text(digits.data(), end);
   const std::size_t e = text.find('e');
   if (e == std::string::npos) return text;

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <eom/output/decimal.hpp>
 #include <eom/output/svg_plot.hpp>
 
 #include "cli/report/page_json.hpp"
@@ -20,7 +20,7 @@ constexpr int digits_of_states = 10, digits_of_screens = 6;
 double shortened(double x, int digits) {
   double result = 0;
   const std::string text = std::isfinite(x) ? fmt::format("{:.{}g}", x, digits) : "0";
-  std::from_chars(text.data(), text.data() + text.size(), result);
+  eom::read_decimal(text, result);
   return result;
 }
 

@@ -4,9 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
-#include <charconv>
 #include <cstring>
+#include <eom/output/decimal.hpp>
 #include <limits>
 #include <stdexcept>
 
@@ -53,14 +52,16 @@ std::string unquoted(std::string_view field) {
 
 double value_of(std::string_view field) {
   double value = std::numeric_limits<double>::quiet_NaN();
-  const auto [stop, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  const auto [stop, error] = eom::read_decimal(field, value);
   return error == std::errc() && stop == field.data() + field.size() ? value : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// Eight bytes, little-endian.
 template <class T>
 void append(std::string& text, T value) {
-  const auto bits = std::bit_cast<std::uint64_t>(value);
+  std::uint64_t bits = 0;
+  static_assert(sizeof bits == sizeof value);
+  std::memcpy(&bits, &value, sizeof bits);
   for (int i = 0; i < 8; ++i) text += static_cast<char>(bits >> (8 * i) & 0xff);
 }
 

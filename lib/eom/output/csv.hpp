@@ -6,7 +6,6 @@
 // %.17g in the C locale, in any locale; -0 is written as 0.
 #pragma once
 
-#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -19,6 +18,7 @@
 
 #include "eom/outcome.hpp"
 #include "eom/output/atomic_file.hpp"
+#include "eom/output/decimal.hpp"
 
 namespace eom {
 
@@ -95,8 +95,7 @@ class CsvWriter {
 
   void append_number(double value) {
     char text[40];
-    const auto end = std::to_chars(text, text + sizeof text, value == 0 ? 0.0 : value, std::chars_format::general, 17);
-    lines_.append(text, end.ptr);
+    lines_.append(text, write_decimal(text, text + sizeof text, value == 0 ? 0.0 : value, 17));
   }
 
   /// Appends a comma and the name, in quotes if RFC 4180 requires them.
