@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <bit>
+#include <cstring>
 
 #include "jit/steps.hpp"
 
 namespace eomgen::jit {
 
 std::uint32_t Constants::index(double value) {
-  const auto [found, is_new] =
-      index_.try_emplace(std::bit_cast<std::uint64_t>(value), static_cast<std::uint32_t>(values_.size()));
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &value, sizeof bits);
+  const auto [found, is_new] = index_.try_emplace(bits, static_cast<std::uint32_t>(values_.size()));
   if (is_new) values_.push_back(value);
   return found->second;
 }

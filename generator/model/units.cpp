@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cctype>
+#include <cstdint>
 #include <vector>
 
 #include "model/names.hpp"
@@ -18,7 +19,7 @@ using Powers = std::array<int, 7>;  // m kg s A K mol cd
 struct NamedUnit {
   std::string_view name;
   Powers powers;
-  long numerator, denominator;
+  std::int64_t numerator, denominator;
   int pi_power;
   bool prefixes;
 };

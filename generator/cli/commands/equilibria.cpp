@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <eom/layout.hpp>
 #include <optional>
 
@@ -27,7 +28,7 @@ struct Options : SceneOptions {
   std::string model;
   std::vector<std::string> hold, trim;
   std::optional<double> at;
-  std::size_t starts = 300;
+  std::uint64_t starts = 300;
 };
 
 Json to_json(const linear::StabilityVerdict& verdict) {

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -23,7 +25,7 @@ namespace {
 struct Options : SceneOptions {
   std::string model, out;
   std::vector<std::string> constraints;
-  std::size_t max_steps = 0;
+  std::uint64_t max_steps = 0;
   bool yes = false;
 };
 
@@ -93,7 +95,8 @@ int execute(const Options& options, const CommonOptions& common) {
   analysis::InverseRequest request;
   request.scene = options.scene;
   request.constraints = options.constraints;
-  request.max_steps = options.max_steps;
+  request.max_steps =
+      static_cast<std::size_t>(std::min<std::uint64_t>(options.max_steps, std::numeric_limits<std::size_t>::max()));
   request.seed = common.seed;
   const InterruptGuard interrupt;
   request.interrupt = &InterruptGuard::flag();

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "analysis/gradients.hpp"
@@ -31,7 +33,7 @@ namespace {
 struct Options : SceneOptions {
   std::string model, out, plot, animation, approach = "auto", form = "auto", tier = "auto", estimate = "bounded";
   std::vector<std::string> sensitivity, gradient, by, plot_of;
-  std::size_t max_steps = 0;
+  std::uint64_t max_steps = 0;
   bool no_error_estimate = false, no_charts = false, yes = false;
 
   bool wants_derivatives() const { return !sensitivity.empty() || !gradient.empty(); }
@@ -161,7 +163,8 @@ int execute(const Options& options, const CommonOptions& common) {
   std::optional<InterruptGuard> interrupt;
   request.ready = [&interrupt] { interrupt.emplace(); };
   request.interrupt = &InterruptGuard::flag();
-  request.max_steps = options.max_steps;
+  request.max_steps =
+      static_cast<std::size_t>(std::min<std::uint64_t>(options.max_steps, std::numeric_limits<std::size_t>::max()));
   request.rows_follow_steps = true;
   std::optional<Rows> rows;
   if (!options.plot_of.empty() && !plot.wanted()) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "analysis/stress_test.hpp"
 #include "cli/commands/commands.hpp"
@@ -26,7 +27,7 @@ struct Options : SceneOptions {
   std::string model, plot;
   std::vector<std::string> solvers;
   double seconds = 60;
-  std::size_t steps = 20000;
+  std::uint64_t steps = 20000;
   bool quick = false;
 };
 

@@ -2,8 +2,10 @@
 #include "cli/picture/glb_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <span>
@@ -39,7 +41,8 @@ constexpr std::array<Material, analysis::animated_kinds> materials{{{"body", 0.1
 
 template <class T>
 void append_bytes(std::string& bytes, T value) {
-  const auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
+  std::array<char, sizeof(T)> raw;
+  std::memcpy(raw.data(), &value, sizeof value);
   bytes.append(raw.data(), raw.size());
 }
 

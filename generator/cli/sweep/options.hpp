@@ -18,7 +18,7 @@ struct SweepOptions : SceneOptions {
   std::vector<std::string> grid, sample;
   std::optional<std::string> design, shard;
   std::optional<double> basins;
-  std::size_t jobs = 0, samples = 0;
+  std::uint64_t jobs = 0, samples = 0;
   bool no_error_estimate = false, ensemble = false, statistics = false;
 };
 

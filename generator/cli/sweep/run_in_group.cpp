@@ -48,7 +48,8 @@ bool Sweep::run_in_group() {
   checkpoint_.sort();
   const bool all = group_->sum(checkpoint_.rows().size()) == runs();
   count();
-  counts_ = {group_->sum(counts_.done), group_->sum(counts_.failed)};
+  counts_ = {static_cast<std::size_t>(group_->sum(counts_.done)),
+             static_cast<std::size_t>(group_->sum(counts_.failed))};
   if (all) write_table_in_group();
   group_->release();
   return all;
