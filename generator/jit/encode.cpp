@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "jit/encode.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <optional>
@@ -348,8 +349,11 @@ FunctionNumber Encoder::choice(const std::vector<abi::Input>& inputs, std::size_
   return assembly_->entries.size() - 1;
 }
 
-FunctionNumber Encoder::with_context(const void* driver, const void* context, std::size_t arguments) {
+FunctionNumber Encoder::with_context(const void* driver, const void* context, const std::vector<abi::Input>& inputs,
+                                     std::size_t results) {
   x86::Assembler& to = assembly_->to;
+  const std::size_t arguments =
+      static_cast<std::size_t>(std::count_if(inputs.begin(), inputs.end(), is_integer)) + results;
   to.align(asmjit::AlignMode::kCode, 16);
   assembly_->entries.push_back(to.newLabel());
   to.bind(assembly_->entries.back());

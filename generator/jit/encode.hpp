@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In: the steps of functions. Out: machine code for x86-64 in memory, with the calling convention of the System V ABI.
-// The memory is writable until the code is complete, and executable from then on, never both.
+// In: the steps of functions. Out: machine code in memory: for x86-64, with the calling convention of the System V ABI
+// (encode.cpp), or WebAssembly, where the program is WebAssembly itself (wasm_encode.cpp). The memory is writable until
+// the code is complete, and executable from then on, never both.
 #pragma once
 
 #include <cstddef>
@@ -56,9 +57,9 @@ class Encoder {
   /// `has_mode`: whether the functions of the cases have the argument `mode` too.
   FunctionNumber choice(const std::vector<abi::Input>& inputs, std::size_t results, const eom::ModeLayout& layout,
                         const std::vector<ChartCase>& cases, bool has_mode);
-  /// Calls `driver` with the same arguments and `context` behind them. `arguments`: the number of integers and
-  /// pointers.
-  FunctionNumber with_context(const void* driver, const void* context, std::size_t arguments);
+  /// Calls `driver` with the same arguments and `context` behind them. `results`: the number of result arrays.
+  FunctionNumber with_context(const void* driver, const void* context, const std::vector<abi::Input>& inputs,
+                              std::size_t results);
 
   struct Finished {
     std::unique_ptr<ExecutableMemory> memory;

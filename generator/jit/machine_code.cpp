@@ -32,11 +32,6 @@ struct MachineCode::Parts {
 
 namespace {
 
-std::size_t count_pointers(const std::vector<abi::Input>& inputs) {
-  return static_cast<std::size_t>(
-      std::count_if(inputs.begin(), inputs.end(), [](abi::Input input) { return input != abi::Input::time; }));
-}
-
 const Function* find(const Program& program, const std::string& name) {
   const auto found = std::find_if(program.functions.begin(), program.functions.end(),
                                   [&](const Function& function) { return function.name == name; });
@@ -100,7 +95,7 @@ class Generation {
     const abi::Function& shape = *abi::find(name);
     if (name == "prepare") {
       numbers_[name] = encoder_.with_context(reinterpret_cast<const void*>(&prepare_in_charts), &parts_.prepare,
-                                             count_pointers(shape.inputs) + shape.results.size());
+                                             shape.inputs, shape.results.size());
     } else if (shape.has_input(abi::Input::mode)) {
       numbers_[name] = encoder_.choice(shape.inputs, shape.results.size(), program_.mode_layout(), cases(name), true);
     } else {
@@ -136,7 +131,7 @@ class Generation {
     parts_.charts.first_entry = program_.mode_layout().chart(0);
     const abi::Function& shape = *abi::find("chart");
     numbers_["chart"] = encoder_.with_context(reinterpret_cast<const void*>(&exchange_charts), &parts_.charts,
-                                              count_pointers(shape.inputs) + shape.results.size());
+                                              shape.inputs, shape.results.size());
   }
 
   void add_taylor() {
@@ -148,7 +143,7 @@ class Generation {
     parts_.taylor.highest_order = static_cast<int>(program::taylor_order(taylor));
     const abi::Function& shape = *abi::find("taylor");
     numbers_["taylor"] = encoder_.with_context(reinterpret_cast<const void*>(&taylor_series), &parts_.taylor,
-                                               count_pointers(shape.inputs) + shape.results.size());
+                                               shape.inputs, shape.results.size());
   }
 
   /// Gives the parts that call functions their addresses.

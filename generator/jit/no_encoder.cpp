@@ -13,7 +13,9 @@ FunctionNumber Encoder::function(const FunctionSteps&, const double*, const doub
 FunctionNumber Encoder::choice(const std::vector<abi::Input>&, std::size_t, const std::vector<ChartCase>&, bool) {
   return 0;
 }
-FunctionNumber Encoder::with_context(const void*, const void*, std::size_t) { return 0; }
+FunctionNumber Encoder::with_context(const void*, const void*, const std::vector<abi::Input>&, std::size_t) {
+  return 0;
+}
 Encoder::Finished Encoder::finish() { return {}; }
 
 const char* encoder_refusal() { return EOMGEN_NO_ENCODER; }
