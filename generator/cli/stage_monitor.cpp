@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <system_error>
 
 #include "work.hpp"
 
@@ -38,7 +39,10 @@ StageMonitor::StageMonitor() {
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
-  thread_ = std::thread([this] { look(); });
+  try {
+    thread_ = std::thread([this] { look(); });
+  } catch (const std::system_error&) {  // a system without threads, or without another one: nothing is shown
+  }
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
@@ -48,7 +52,7 @@ StageMonitor::~StageMonitor() {
     end_ = true;
   }
   ended_.notify_one();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
 }
 
 void StageMonitor::look() {
