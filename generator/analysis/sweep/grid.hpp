@@ -2,7 +2,10 @@
 // Grid of parameter values: the Cartesian product of its axes.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -14,7 +17,8 @@
 namespace eomgen::analysis {
 
 /// Upper limit of the size of a sweep. Products of two such numbers stay exact.
-inline constexpr std::size_t max_points = 1'000'000'000'000;
+inline constexpr std::size_t max_points =
+    static_cast<std::size_t>(std::min<std::uint64_t>(1'000'000'000'000, std::numeric_limits<std::size_t>::max()));
 
 /// Values of one parameter: explicit values, or a range whose values are computed on demand.
 struct GridAxis {

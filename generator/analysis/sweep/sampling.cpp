@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <numeric>
 
@@ -16,8 +17,8 @@
 namespace eomgen::analysis {
 namespace {
 
-constexpr std::size_t most_samples = 1'000'000'000'000, most_latin = 10'000'000,
-                      most_sobol = 1ULL << 32;  // latin stores 4 bytes per sample
+constexpr std::uint64_t most_samples = 1'000'000'000'000, most_latin = 10'000'000,
+                        most_sobol = 1ULL << 32;  // latin stores 4 bytes per sample
 
 [[noreturn]] void fail(const std::string& what, const std::string& remedy) { throw Error("sweep", {}, what, remedy); }
 
@@ -116,7 +117,7 @@ std::string SampledAxis::domain_error() const {
 Sampling::Sampling(std::vector<SampledAxis> axes, std::size_t count, Design design, std::uint64_t seed)
     : axes_(std::move(axes)), count_(count), design_(design), seed_(seed) {
   if (count > most_samples) fail(fmt::format("more than {} samples are asked for", most_samples), "take fewer");
-  const std::size_t most = design == Design::latin ? most_latin : most_sobol;
+  const std::uint64_t most = design == Design::latin ? most_latin : most_sobol;
   if (design != Design::random && count > most)
     fail(fmt::format("the design {} makes at most {} samples", name(design), most), "take the design random");
   if (design == Design::sobol && axes_.size() > most_dimensions)

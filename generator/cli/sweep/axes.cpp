@@ -76,7 +76,7 @@ std::size_t count_of(const std::string& text, const std::string& axis) {
   const Rational value = parse_decimal(text, axis);
   if (cln::denominator(value) != 1 || value < 2)
     wrong_grid(fmt::format("the number of values in {} is not a whole number of at least 2", model::quote(axis)));
-  if (value > Rational(static_cast<long>(analysis::max_points)))
+  if (value > Rational(analysis::max_points))
     wrong_grid(fmt::format("{} asks for more than {} values", model::quote(axis), analysis::max_points));
   return static_cast<std::size_t>(cln::double_approx(value));
 }
