@@ -37,7 +37,9 @@ expect 2 "test refuses options that contradict each other" "$source/scripts/test
 expect 2 "the ledger is of every test only" "$source/scripts/test" --time --only lib
 expect 2 "demo refuses an option" "$source/scripts/demo" --fast
 expect 2 "demo refuses two folders" "$source/scripts/demo" a b
-for script in setup test demo; do
+expect 2 "wasm refuses an option" "$source/scripts/wasm" --fast
+expect 2 "wasm refuses two folders" "$source/scripts/wasm" a b
+for script in setup test demo wasm; do
   expect 0 "$script shows how it is used" "$source/scripts/$script" --help
   says "usage: scripts/$script"
 done

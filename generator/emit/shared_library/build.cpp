@@ -71,6 +71,7 @@ std::optional<Compiler> search_compiler(const Recipe& recipe, std::string& refus
   refusal = asked.empty() ? "there is no " + recipe.language + " compiler"
                           : "the " + recipe.language + " compiler `" + asked + "` does not run";
   remedy = "sudo apt-get install " + recipe.package + (asked.empty() ? "" : ", or unset " + unset);
+  if (!can_start_programs()) remedy = "this eomgen starts no other programs; use one for Linux";
   return std::nullopt;
 }
 

@@ -4,6 +4,8 @@
 
 namespace eomgen::emit {
 
+bool can_start_programs() { return false; }
+
 ProcessResult run_process(const std::vector<std::string>&, const std::atomic<bool>*) { return {}; }
 
 }  // namespace eomgen::emit

@@ -15,6 +15,9 @@ struct ProcessResult {
   bool interrupted = false;
 };
 
+/// Whether this system starts programs at all.
+bool can_start_programs();
+
 /// Runs `arguments[0]`, which is searched in PATH. Standard input is empty. If `interrupt` is set meanwhile, the
 /// process and its children are terminated.
 ProcessResult run_process(const std::vector<std::string>& arguments, const std::atomic<bool>* interrupt = nullptr);
