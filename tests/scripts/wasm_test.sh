@@ -67,9 +67,6 @@ done
 run_both 0 "verify cart_pendulum" verify cart_pendulum --no-compile
 grep -q '^pass: 20 points, 50 digits' "$scratch/wasm/output" || { echo "FAILED: verify passes"; exit 1; }
 
-run_both 0 "sweep in this process" sweep S5_double_pendulum --grid L1=0.5:2:4 --out s.csv
-equal "sweep" s.csv
-
 # What WebAssembly has not is refused with a reason.
 code=0
 node "$EOMGEN_WASM_PREFIX/bin/eomgen.js" run cart_pendulum --tier compiled >"$scratch/output" 2>&1 || code=$?
