@@ -60,12 +60,13 @@ void transfer(Archive& archive, std::optional<Value>& value) requires(!std::is_t
 template <class Archive>
 void transfer(Archive& archive, hybrid::ContactModes::State& state) {
   auto& [mode, chatter, hits, slip, restitution, largest_gap, force_sizes] = state;
-  auto& [largest, least] = slip;
+  auto& [largest, least, starts] = slip;
   transfer(archive, mode);
   transfer(archive, chatter);
   transfer(archive, hits);
   transfer(archive, largest);
   transfer(archive, least);
+  transfer(archive, starts);
   transfer(archive, restitution);
   transfer(archive, largest_gap);
   transfer(archive, force_sizes);

@@ -89,6 +89,7 @@ class ContactModes {
   double gap_accuracy(double t, std::span<const double> x, std::size_t j) {
     return std::max(known_gap * largest_gap_, velocities_.gap_rounding(t, x, model_.inputs(t), j));
   }
+  void update_starts(int mode);
   bool compute_gap_decelerations(double t, std::span<double> x, int mode, std::vector<double>& result);
   MetContacts contacts_met(double t, std::span<double> x, std::size_t j, double time);
   void end_bounce_sequence(double& t, std::span<double> x, std::size_t j);
@@ -160,6 +161,7 @@ inline void ContactModes::restore(const State& from) {
   rows_.set_mode(from.mode);
   switch_.emplace(rule_.table(), rule_, from.mode);
   switch_->set_chatter(from.chatter);
+  update_starts(from.mode);
 }
 
 inline ContactModes::ContactModes(const Problem& problem, Model& model, ConstraintRows& rows, Changed changed,
@@ -223,6 +225,7 @@ inline std::vector<Event> ContactModes::start(double t, std::span<double> x) {
   const int mode = rule_.start(t, x, std::span<const bool>(open.data(), contacts.size()));
   rows_.set_mode(mode);
   switch_.emplace(rule_.table(), rule_, mode);
+  update_starts(mode);
   update_min_slip(t, x.data());
   std::vector<Event> recorded;
   for (std::size_t j = 0; j < contacts.size(); ++j) {
@@ -301,6 +304,17 @@ inline void ContactModes::shift_to_watched(double* g) {
       largest_gap_ = std::max(largest_gap_, value[3]);  // not the values that trial steps reach below the surface
   }
   rule_.shift_to_watched(g);
+  for (std::size_t j = 0; j < problem_.code->contacts.size(); ++j)
+    if (velocities_.starts().is_active(j)) g[contact_values * j] = 1;  // its slip has not got its own direction
+}
+
+/// Ends starts of contacts that do not slide in this mode. The right-hand side needs those that are left.
+inline void ContactModes::update_starts(int mode) {
+  for (std::size_t j = 0; j < problem_.code->contacts.size(); ++j) {
+    const int digit = contact_digit(mode, j);
+    if (digit % 3 == 0 || (problem_.code->contacts[j].unilateral && digit >= 3)) velocities_.starts().end(j);
+  }
+  model_.set_slip_starts(&velocities_.starts());
 }
 
 inline EventAction ContactModes::handle_event(double& t, std::span<double> x, const Crossing& crossing,
@@ -316,6 +330,7 @@ inline EventAction ContactModes::handle_event(double& t, std::span<double> x, co
   const EventAction answer = switch_->handle_event(t, x, crossing, functions);
   if (e > 0) rule_.set_restitution(j, e);
   rows_.set_mode(switch_->mode);
+  update_starts(switch_->mode);
   if (answer == EventAction::restart) update_min_slip(t, x.data());
   record(std::span(switch_->events).subspan(before));
   return answer;

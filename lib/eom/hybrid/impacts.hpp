@@ -15,11 +15,18 @@
 #include "eom/constraints/projection.hpp"
 #include "eom/hybrid/constraint_rows.hpp"
 #include "eom/hybrid/impact_work.hpp"
+#include "eom/hybrid/slip_start.hpp"
 
 namespace eom::hybrid {
 
 /// Tolerances of the adaptive steps that replace fixed ones while slip in two directions changes too much within one.
 inline constexpr double slow_slip_rtol = 1e-12, slow_slip_atol = 1e-15;
+
+inline ModeArray all_open(const Problem& problem) {
+  ModeArray mode(problem.mode_layout());
+  mode.set_contacts(open_mode(problem.code->contacts));
+  return mode;
+}
 
 class ContactVelocities {
  public:
@@ -44,9 +51,15 @@ class ContactVelocities {
   struct ObservedSlip {
     double largest = 0;
     std::vector<double> least;  // per contact: that counts
+    std::vector<SlipStarts::Start> starts;
   };
-  ObservedSlip observed_slip() const { return {largest_slip_, least_}; }
-  void set_observed_slip(const ObservedSlip& slip) { largest_slip_ = slip.largest, least_ = slip.least; }
+  ObservedSlip observed_slip() const { return {largest_slip_, least_, starts_.save()}; }
+  void set_observed_slip(const ObservedSlip& slip) {
+    largest_slip_ = slip.largest, least_ = slip.least;
+    starts_.restore(slip.starts);
+  }
+  /// Slip in two directions that has just begun.
+  SlipStarts& starts() { return starts_; }
   /// Tolerances of the steps of the run.
   void set_tolerances(double rtol, double atol) { rtol_ = rtol, atol_ = atol; }
   void record_slip_speed(double speed) { largest_slip_ = std::max(largest_slip_, speed); }
@@ -69,6 +82,7 @@ class ContactVelocities {
   double rtol_, atol_;
   double largest_slip_ = 0;
   ModeArray open_;  // all contacts open
+  SlipStarts starts_;
   Energy energy_;
   std::vector<ContactImpulse> impulses_;  // per contact; empty: none yet
 };
@@ -80,10 +94,9 @@ inline ContactVelocities::ContactVelocities(const Problem& problem, ConstraintRo
       y_(problem.code->output_names.size()),
       rtol_(problem.rtol),
       atol_(problem.atol),
-      open_(problem.mode_layout()),
-      energy_(std::move(energy)) {
-  open_.set_contacts(open_mode(problem.code->contacts));
-}
+      open_(all_open(problem)),
+      starts_(problem, open_),
+      energy_(std::move(energy)) {}
 
 inline double ContactVelocities::negligible_speed() const {
   constexpr double rounding = 1e-15, share = 1e-3, roundings = 1e-14;
@@ -101,6 +114,7 @@ inline int ContactVelocities::restitution(double t, const double* x, const doubl
 inline void ContactVelocities::reset() {
   largest_slip_ = 0;
   least_.assign(problem_.contacts.size(), negligible_speed());
+  starts_.reset();
 }
 
 // The slip is accurate to the tolerance of the rates on which it depends.
@@ -121,6 +135,7 @@ inline void ContactVelocities::update_min_slip(double t, const double* x, const 
     }
     least_[j] = std::max(negligible_speed(), tolerances * known);
   }
+  starts_.update(t, x, u, least_, rtol_);
 }
 
 inline std::array<double, 2> ContactVelocities::slip(double t, const double* x, const double* u, std::size_t contact) {
@@ -245,6 +260,7 @@ inline int ContactVelocities::slide(double t, std::span<double> x, const double*
     rows_.set_target(rows_.slip_row_of(contact) + a, 2 * min_slip_speed(contact) * direction[a] / length);
   const int code = move(t, x, u);
   rows_.clear_targets();
+  if (code == 0 && direction.size() == 2) starts_.begin(contact, {direction[0] / length, direction[1] / length});
   return code;
 }
 

@@ -17,6 +17,7 @@
 #include "eom/hybrid/inputs.hpp"
 #include "eom/hybrid/problem.hpp"
 #include "eom/hybrid/sliding_surfaces.hpp"
+#include "eom/hybrid/slip_start.hpp"
 #include "eom/modes/contact_table.hpp"
 #include "eom/modes/mode_array.hpp"
 #include "eom/with_jacobian.hpp"
@@ -183,6 +184,7 @@ class Model {
   /// dx = f(t, x) in the current mode.
   int rhs(double t, const double* x, double* dx) {
     if (sliding_.any()) return sliding_.evaluate(mode_, t, x, dx);
+    if (slip_starts_ != nullptr && slip_starts_->any()) return rhs_of_start(t, x, dx);
     if (const int code = solve_contacts(t, x); code != 0) return code;
     const double* u = inputs(t);
     const int code = motion(t, x, u, mode_.data(), dx);
@@ -191,6 +193,8 @@ class Model {
     return code != 0 && mode_.has_frozen_branches() ? motion(t, x, u, mode_without_branches(), dx) : code;
   }
 
+  /// Slip in two directions that has just begun; null: none. They must outlive this object.
+  void set_slip_starts(SlipStarts* starts) { slip_starts_ = starts; }
   /// In a given mode of the contacts.
   int rhs_of(int contacts, double t, const double* x, double* dx) {
     return motion(t, x, inputs(t), mode_with_contacts(contacts), dx);
@@ -199,7 +203,8 @@ class Model {
   /// The derivatives are partial, at fixed inputs. If inputs vary between their jumps, df/dt is not available. `work`:
   /// whether the work is a state here; else it is a quadrature, without row and column.
   int jacobian(double t, const double* x, double* dfdx, double* dfdt, bool work) {
-    if (code_->jac == nullptr || sliding_.any() || forces_) return no_jacobian_here;
+    if (code_->jac == nullptr || sliding_.any() || forces_ || (slip_starts_ != nullptr && slip_starts_->any()))
+      return no_jacobian_here;
     const std::size_t n = code_->layout().size();
     if (work) dfdx_.resize(n * n);
     const double* u = inputs(t);
@@ -286,6 +291,13 @@ class Model {
       return of->code_->contact_rows(t, x, of->parameters(), u, of->mode_.data(), c);
     }
   };
+  /// While slip in two directions begins. Rates are those of x.
+  int rhs_of_start(double t, const double* x, double* dx) {
+    const double* u = inputs(t);
+    const int code = motion(t, slip_starts_->lead(t, x, u), u, mode_.data(), dx);
+    std::copy_n(x + n_, n_, dx);
+    return code;
+  }
   int accelerations(double t, const double* x, const double* u, double* qddot) {
     dx_.resize(code_->layout().size());
     const auto evaluate = [&](const int* mode) {
@@ -335,36 +347,8 @@ class Model {
     if (code_->prepare != nullptr && code_->prepare(parameters(), w_.data()) != 0) w_.clear();
   }
 
-  /// Copies df/dx of n states, and adds the row of the work: derivatives of the power, by central differences.
-  int add_work(double t, const double* x, std::size_t n, double* dfdx, double* dfdt) {
-    constexpr double part = 6e-6;  // the cube root of the rounding
-    const std::size_t m = n + 1;
-    for (std::size_t j = 0; j < n; ++j) std::copy_n(dfdx_.data() + n * j, n, dfdx + m * j);
-    std::fill_n(dfdx + m * n, m, 0.0);
-    x_.assign(x, x + m);
-    double largest = 0;
-    for (std::size_t j = 0; j < n; ++j) largest = std::max(largest, std::abs(x[j]));
-    const auto slope = [&](double& moved, const double& at, double size, double& result) {
-      const double middle = moved;
-      double power[2] = {0, 0}, place[2] = {0, 0};
-      int code = 0;
-      for (const int side : {0, 1}) {
-        moved = middle + (side == 0 ? -size : size);
-        place[side] = moved;
-        if (code == 0) code = outputs(at, x_.data(), y_.data());
-        power[side] = y_[*problem_.power];
-      }
-      moved = middle;
-      result = (power[1] - power[0]) / (place[1] - place[0]);
-      return code;
-    };
-    for (std::size_t j = 0; j < n; ++j) {
-      const double size = part * (x_[j] != 0 ? std::abs(x_[j]) : largest > 0 ? largest : 1);
-      if (const int code = slope(x_[j], t, size, dfdx[n + m * j]); code != 0) return code;
-    }
-    double at = t;
-    return slope(at, at, part * (t != 0 ? std::abs(t) : 1), dfdt[n]);
-  }
+  /// Copies df/dx of n states, and adds the row of the work.
+  int add_work(double t, const double* x, std::size_t n, double* dfdx, double* dfdt);
 
   int motion(double t, const double* x, const double* u, const int* mode, double* dx) {
     const int code = w_.empty() ? code_->rhs(t, x, parameters(), u, mode, dx)
@@ -383,6 +367,7 @@ class Model {
   double segment_time_ = 0;
   Inputs inputs_;
   mutable std::vector<double> u_;
+  SlipStarts* slip_starts_ = nullptr;
   bool inputs_move_;       // some input varies between its jumps
   std::vector<double> w_;  // output of Code::prepare
   std::vector<double> dfdx_, x_;
@@ -397,3 +382,5 @@ class Model {
 };
 
 }  // namespace eom::hybrid
+
+#include "eom/hybrid/work_derivatives.hpp"  // the member that adds the derivatives of the power
