@@ -58,8 +58,8 @@ class Transitions {
   const std::vector<Impulse>& impulses() const { return impulses_; }
 
   /// Impulses of the contacts in `touching` (indices) that approach one another; the rates in x change. Contacts in
-  /// `plastic` do not bounce. `rest`: the speeds of all gaps become 0. `hit` receives those that had an impulse and
-  /// approached.
+  /// `plastic` do not bounce. `rest`: the speeds of all gaps become 0, and slip that is as slow as they. `hit` receives
+  /// those that had an impulse and approached.
   Result impact(double t, double* x, double* u, const std::vector<std::size_t>& touching,
                 const std::vector<bool>& plastic, bool rest, const Tolerances& tolerances,
                 std::vector<std::size_t>& hit) {
@@ -68,6 +68,10 @@ class Transitions {
     impulses_.assign(forces_.set().contacts.size(), {});
     if (rest) {  // first what the law does, then the speeds that are left of it
       const std::vector<bool> all(plastic.size(), true);
+      constexpr double times = 3;  // such a slip has the energy of the bounces that are left out
+      rest_slip_ = 0;
+      for (const std::size_t j : touching)
+        rest_slip_ = std::max(rest_slip_, times * std::abs(forces_.rate(forces_.contact(j).normal)));
       const Result first = apply(t, x, u, touching, all, false, tolerances, hit);
       return first.outcome != Outcome::done ? first : apply(t, x, u, touching, all, true, tolerances, hit);
     }
@@ -141,6 +145,10 @@ class Transitions {
                                         at.unilateral && !rest ? Kind::unilateral : Kind::bilateral);
       if (law != ImpactLaw::newton && at.sticks && !rest)
         rows.add_friction(j, normal, forces_.value(at.dynamic_coefficient));
+      double slip = 0;
+      for (const Row& row : at.slip) slip = std::hypot(slip, speed(row, x));
+      for (std::size_t a = 0; a < at.slip.size() && rest && at.sticks && slip <= rest_slip_; ++a)
+        rows.add_row(j, at.slip[a], forces_.tangent_pattern(j, a), Kind::bilateral);
     }
     if (const int code = rows.complete(); code != 0) return {Outcome::no_value, code, none};
     FrictionProblem& problem = rows.problem();
@@ -172,8 +180,8 @@ class Transitions {
     push(rows, total, x);
     for (Index i = 0; i < count; ++i) {
       const std::size_t j = rows.contact(i);
-      if (rows.kind(i) != Kind::friction && forces_.contact(j).unilateral && approach(i) < -tolerances.speed &&
-          total(i) > 0 && std::find(hit.begin(), hit.end(), j) == hit.end())
+      if (&rows.row(i) == &forces_.contact(j).normal && forces_.contact(j).unilateral &&
+          approach(i) < -tolerances.speed && total(i) > 0 && std::find(hit.begin(), hit.end(), j) == hit.end())
         hit.push_back(j);
     }
     return {};
@@ -373,6 +381,7 @@ class Transitions {
   std::size_t input_count_ = 0;
   double largest_residual_ = 0;
   bool favours_ = true;
+  double rest_slip_ = 0;
   Vector before_;  // rates at which the rows were evaluated
   std::vector<Impulse> impulses_;
   std::array<double, 2> friction_before_{};
