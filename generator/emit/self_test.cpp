@@ -71,7 +71,7 @@ std::optional<FunctionValues> rounded(const std::string& function, const program
                                                 single_to_double_ulp * safety_factor * off, single_least_number})
                                     : std::max({relative_tolerance * largest, safety_factor * off, least_number});
     const std::string text = fmt::format("{:.1e}", 1.05 * tolerance);
-    eom::read_decimal(text, values.tolerances.emplace_back());
+    eom::decimals::read_decimal(text, values.tolerances.emplace_back());
   }
   return values;
 }

@@ -95,7 +95,7 @@ double to_single(double value) {
   require_place(value);
   const std::string text = decimal(value);
   float number = 0;
-  eom::read_decimal(text, number);
+  eom::decimals::read_decimal(text, number);
   return static_cast<double>(number);
 }
 

@@ -56,7 +56,7 @@ std::string decimal(double value) {
   if (std::isnan(value)) return "(0.0/0.0)";
   if (std::isinf(value)) return value > 0 ? "HUGE_VAL" : "(-HUGE_VAL)";
   char buffer[64];
-  const auto end = eom::write_shortest(buffer, buffer + sizeof buffer, value);
+  const auto end = eom::decimals::write_shortest(buffer, buffer + sizeof buffer, value);
   std::string result(buffer, end);
   if (result.find_first_of(".e") == std::string::npos) result += ".0";
   return result;

@@ -43,7 +43,7 @@ class Words {
     std::string_view word = next();
     if (word.starts_with('+')) word.remove_prefix(1);
     double value = 0;
-    const auto [end, problem] = eom::read_decimal(word, value);
+    const auto [end, problem] = eom::decimals::read_decimal(word, value);
     if (problem != std::errc() || end != word.data() + word.size()) return std::nullopt;
     return value;
   }

@@ -102,7 +102,7 @@ std::optional<Number> parse_number(std::string_view text) {
     decimal += fmt::format("e{}{}", sign == 1 && text[end + 1] == '-' ? "-" : "", text.substr(first));
   }
   long double value = 0;
-  const auto [stop, problem] = eom::read_decimal(decimal, value);
+  const auto [stop, problem] = eom::decimals::read_decimal(decimal, value);
   if (problem != std::errc() || stop != decimal.data() + decimal.size()) return std::nullopt;
   if (value == 0) return Number();
   if (!(std::fabs(value) >= 1e-300L && std::fabs(value) <= 1e300L)) return std::nullopt;

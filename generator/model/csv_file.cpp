@@ -121,7 +121,7 @@ class CsvReader {
     double value = 0;
     std::string_view text = field.text;
     if (text.starts_with('+')) text.remove_prefix(1);
-    const auto [end, problem] = eom::read_decimal(text, value);
+    const auto [end, problem] = eom::decimals::read_decimal(text, value);
     if (problem != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
       fail(field,
            field.text.empty() ? "a value is missing"

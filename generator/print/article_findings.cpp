@@ -17,7 +17,8 @@ namespace {
 /// 1.5e-07 -> 1.5\cdot 10^{-7}
 std::string number_in_latex(double value) {
   std::array<char, 32> digits{};
-  const auto end = eom::write_decimal(digits.data(), digits.data() + digits.size(), value == 0 ? 0.0 : value, 6);
+  const auto end =
+      eom::decimals::write_decimal(digits.data(), digits.data() + digits.size(), value == 0 ? 0.0 : value, 6);
   std::string text(digits.data(), end);
   const std::size_t e = text.find('e');
   if (e == std::string::npos) return text;

@@ -20,7 +20,7 @@ std::string standard(double value) {
 
 std::string by_printf(double value) {
   char text[40];
-  return {text, eom::by_c_library::write_shortest(text, text + sizeof text, value)};
+  return {text, eom::decimals::by_c_library::write_shortest(text, text + sizeof text, value)};
 }
 
 /// The same end, the same error and the same value as from_chars.
@@ -29,7 +29,7 @@ void compare_reading(const std::string& text) {
   Number expected = 7, found = 7;
   const char* const last = text.data() + text.size();
   const auto [end, error] = std::from_chars(text.data(), last, expected);
-  const auto [found_end, found_error] = eom::by_c_library::read_decimal(text.data(), last, found);
+  const auto [found_end, found_error] = eom::decimals::by_c_library::read_decimal(text.data(), last, found);
   INFO(text);
   CHECK(found_end - text.data() == end - text.data());
   CHECK((found_error == error));
@@ -70,7 +70,7 @@ TEST_CASE("decimal: numbers are written without <charconv> as with it") {
     CHECK(by_printf(value) == standard(value));
     for (int digits = 1; digits <= 17; ++digits) {
       char text[40], expected[40];
-      CHECK(std::string(text, eom::by_c_library::write_decimal(text, text + sizeof text, value, digits)) ==
+      CHECK(std::string(text, eom::decimals::by_c_library::write_decimal(text, text + sizeof text, value, digits)) ==
             std::string(
                 expected,
                 std::to_chars(expected, expected + sizeof expected, value, std::chars_format::general, digits).ptr));

@@ -31,7 +31,7 @@ class Tag {
   double number(const std::string& key, double otherwise = 0) const {
     const std::string value = get(key);
     double result = value.empty() ? otherwise : 0;
-    eom::read_decimal(value, result);
+    eom::decimals::read_decimal(value, result);
     return result;
   }
 
@@ -154,7 +154,7 @@ std::vector<double> numbers(const std::string& text) {
   const char* const last = text.data() + text.size();
   for (const char* at = text.data(); at != last;) {
     double value = 0;
-    const auto [end, error] = eom::read_decimal(at, last, value);
+    const auto [end, error] = eom::decimals::read_decimal(at, last, value);
     if (error == std::errc()) result.push_back(value);
     at = end == at ? at + 1 : end;
   }

@@ -20,7 +20,7 @@ constexpr int digits_of_states = 10, digits_of_screens = 6;
 double shortened(double x, int digits) {
   double result = 0;
   const std::string text = std::isfinite(x) ? fmt::format("{:.{}g}", x, digits) : "0";
-  eom::read_decimal(text, result);
+  eom::decimals::read_decimal(text, result);
   return result;
 }
 

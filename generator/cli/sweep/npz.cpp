@@ -52,7 +52,7 @@ std::string unquoted(std::string_view field) {
 
 double value_of(std::string_view field) {
   double value = std::numeric_limits<double>::quiet_NaN();
-  const auto [stop, error] = eom::read_decimal(field, value);
+  const auto [stop, error] = eom::decimals::read_decimal(field, value);
   return error == std::errc() && stop == field.data() + field.size() ? value : std::numeric_limits<double>::quiet_NaN();
 }
 

@@ -51,7 +51,7 @@ std::vector<ColumnStatistics> statistics_of_table(const std::string& header, std
         if (k == outcome) well = is_successful(text);
         if (k < first || !well) return;
         double value = 0;
-        const auto [stop, error] = eom::read_decimal(text, value);
+        const auto [stop, error] = eom::decimals::read_decimal(text, value);
         if (error == std::errc() && stop == text.data() + text.size() && std::isfinite(value))
           values[k - first].push_back(value);
       });
@@ -80,7 +80,7 @@ void classify_runs(analysis::BasinStatistics& basins, const std::string& header,
       const auto place = std::find(places.begin(), places.end(), k);
       if (place == places.end()) return;
       double& value = state[static_cast<std::size_t>(place - places.begin())];
-      const auto [stop, error] = eom::read_decimal(text, value);
+      const auto [stop, error] = eom::decimals::read_decimal(text, value);
       if (error != std::errc() || stop != text.data() + text.size()) value = std::nan("");
     });
     if (well) basins.classify(state);

@@ -95,7 +95,7 @@ class CsvWriter {
 
   void append_number(double value) {
     char text[40];
-    lines_.append(text, write_decimal(text, text + sizeof text, value == 0 ? 0.0 : value, 17));
+    lines_.append(text, decimals::write_decimal(text, text + sizeof text, value == 0 ? 0.0 : value, 17));
   }
 
   /// Appends a comma and the name, in quotes if RFC 4180 requires them.

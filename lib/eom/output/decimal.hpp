@@ -20,7 +20,7 @@
 #include <type_traits>
 #include <version>
 
-namespace eom {
+namespace eom::decimals {
 
 namespace by_c_library {
 
@@ -146,4 +146,4 @@ inline char* write_shortest(char* first, char* last, double value) {
 #endif
 }
 
-}  // namespace eom
+}  // namespace eom::decimals
