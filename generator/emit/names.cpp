@@ -58,7 +58,7 @@ constexpr std::string_view runtime[] = {
     "Outcome", "Plot", "PlotMark", "PlotSeries", "PowerBalance", "Projection", "ProjectionOptions", "ProjectionResult", "Refusal", "Registry", "Result", "Rhs",
     "Run", "StateLayout", "Statistics", "StepEnds", "StepView", "System", "Transition", "Watch", "WatchedSurface", "WithJacobian", "WithTaylor", "all_features", "open_mode", 
     "code_jump", "code_no_convergence", "code_not_finite", "constrained", "is_contact_digit", 
-    "contact_digit", "contact_sign", "contact_modes", "contact_states", "contact_values", "contacts", "detail", "device", "discrete", "divergence_bound",
+    "contact_digit", "contact_sign", "contact_modes", "contact_states", "contact_values", "contacts", "decimals", "detail", "device", "discrete", "divergence_bound",
     "eligible", "ensemble", "estimate_error", "events", "events_without_progress", "explicit_rk", "expressions", "find_method", "fmi", "hybrid", "implicit", "integrate",
     "integrate_ensemble", "integrate_ensemble_events", "integrate_events", "integrate_modes", "max_charts", "max_contacts", "methods", "modes", "name",
     "no_jacobian_here", "no_time_derivative_here", "outcome_of_abi_code", "plot", "keeps_sliding", "smallest_step_in_ulps", "svg",

@@ -17,9 +17,9 @@ using test::at_tolerance;
 using test::events_of;
 using test::FinishedRun;
 
-constexpr double g = 9.81;
+constexpr double weight_of_kg = 9.81;
 
-std::size_t count_of(const FinishedRun& run, const std::string& kind) {
+std::size_t number_of(const FinishedRun& run, const std::string& kind) {
   std::size_t count = 0;
   for (const eom::hybrid::Event& event : events_of(run)) count += event.kind == kind ? 1 : 0;
   return count;
@@ -99,7 +99,7 @@ TEST_CASE("slip start: a puck that a turning force pulls slips once, with every 
   double early = 0.5, late = 1;
   for (int k = 0; k < 60; ++k) {
     const double middle = (early + late) / 2;
-    (std::hypot(3 * middle, std::sin(5 * middle)) > 0.3 * g ? late : early) = middle;
+    (std::hypot(3 * middle, std::sin(5 * middle)) > 0.3 * weight_of_kg ? late : early) = middle;
   }
   for (const std::string solver : {"auto", "dopri5", "tsit5", "dop853", "radau", "radau5"}) {
     for (const double rtol : {1e-6, 1e-9}) {
@@ -151,7 +151,7 @@ moment = "t*E2"
 t = [0, 3]
 initial = { x = 0, z = "0.1/cos(0.7)", th = 0 }
 )toml";
-  const double slip = 0.3 * 0.1 * 2 * g / (std::cos(0.7) * (1 + 0.3 * 0.3));
+  const double slip = 0.3 * 0.1 * 2 * weight_of_kg / (std::cos(0.7) * (1 + 0.3 * 0.3));
   const double angle = std::pow(3 - slip, 3) / 6 / 0.01;
   for (const std::string solver : {"auto", "dopri5", "radau5"}) {
     for (const double rtol : {1e-5, 1e-7, 1e-9, 1e-11}) {
@@ -160,7 +160,7 @@ initial = { x = 0, z = "0.1/cos(0.7)", th = 0 }
       const FinishedRun run = test::run_text("groove", groove, with_solver(solver, rtol));
       CHECK(run.simulation.result.outcome == eom::Outcome::done);
       REQUIRE(events_of(run).size() == 2);
-      CHECK(count_of(run, "slip") == 2);
+      CHECK(number_of(run, "slip") == 2);
       for (const eom::hybrid::Event& event : events_of(run))
         CHECK(std::abs(event.t - slip) < 1e-8);  // the barrier of undetermined forces
       CHECK(std::abs(run.final("th") / angle - 1) < 1e-8);
@@ -181,7 +181,7 @@ TEST_CASE("slip start: a table that turns as it begins to slip") {
       CAPTURE(rtol);
       const FinishedRun run = test::run_text("table_3", table(three), with_solver(solver, rtol));
       CHECK(run.simulation.result.outcome == eom::Outcome::done);
-      CHECK(count_of(run, "slip") == 3);
+      CHECK(number_of(run, "slip") == 3);
       CHECK(std::abs(events_of(run)[0].t - 1.4423443) < 1e-7);
       CHECK(std::abs(run.final("p") - 0.15070243) < 1e-8 + 100 * rtol);
       CHECK(run.simulation.result.statistics.steps < (solver == "auto" ? 1500 : 40000));
@@ -195,7 +195,7 @@ TEST_CASE("slip start: a table that turns as it begins to slip") {
     const FinishedRun run = test::run_text("table_4", table(four), at_tolerance(rtol));
     CHECK(run.simulation.result.outcome == eom::Outcome::done);
     REQUIRE(events_of(run).size() == 4);
-    CHECK(count_of(run, "slip") == 4);
+    CHECK(number_of(run, "slip") == 4);
     for (const eom::hybrid::Event& event : events_of(run)) CHECK(std::abs(event.t - 1.443279) < 1e-6);
   }
 }
