@@ -172,6 +172,8 @@ class ContactForces {
   // Values that count as zero, from the largest terms of the run.
   negligible() { return Math.max(1e-15, this.tolerances.atol, Math.max(1e-3 * this.tolerances.rtol, 1e-14) * this.sizes.speed); }
   gapRounding(j, x) { return Math.max(16 * 2 ** -52 * Math.max(this.sizes.terms[j], this.terms(this.contacts[j].normal, x)), knownGap * this.sizes.gap[j]); }
+  // Bounces up to this height are none (eom/contacts/thresholds.hpp).
+  lowBounce(j, x) { return Math.max(10 * this.gapRounding(j, x), 1e-12 * this.sizes.gap[j]); }
   observeState(x) {
     const {sizes} = this, grow = (value, before) => (Number.isFinite(value) ? Math.max(before, value) : before);
     this.contacts.forEach((at, j) => {

@@ -130,13 +130,13 @@ class SolvedContacts extends ContactTransitions {
     for (const i of touching) {
       const at = this.contacts[i];
       if (!at.unilateral || !(this.rate(at.normal) < -this.negligible())) continue;
-      const speed = -this.rate(at.normal), away = speed * this.c[at.restitution], back = -this.acceleration(at.normal, a), known = 10 * this.gapRounding(i, x);
+      const speed = -this.rate(at.normal), away = speed * this.c[at.restitution], back = -this.acceleration(at.normal, a), known = this.lowBounce(i, x);
       if (away > 0 && back > 0 && away * away / (2 * back) <= known || away <= this.negligible()) plastic[i] = true;
       meets = true;
       rest = rest && back > 0 && speed * speed / (2 * back) <= known;
     }
     if (!meets || !rest) return false;
-    this.contacts.forEach((at, i) => { if (at.unilateral && !touching.includes(i) && this.c[at.gap] <= 10 * this.gapRounding(i, x)) touching.push(i); });
+    this.contacts.forEach((at, i) => { if (at.unilateral && !touching.includes(i) && this.c[at.gap] <= this.lowBounce(i, x)) touching.push(i); });
     return true;
   }
 }
