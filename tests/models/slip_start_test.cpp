@@ -93,7 +93,7 @@ initial = { x = 0, y = 0, z = 0.05, p = 0, q = 0, r = 0 }
 
 }  // namespace
 
-// Slip begins where the force is mu m g. The place at the end: v' = F(t) - mu g v/|v| by the Radau method of SciPy 1.10
+// Slip begins where the force is mu m g. The place at the end: v' = F(t) - mu g v/|v| by the Radau method of SciPy
 // at rtol 1e-11, with the slip of 1e-13 along the force at the start.
 TEST_CASE("slip start: a puck that a turning force pulls slips once, with every solver") {
   double early = 0.5, late = 1;
@@ -200,7 +200,8 @@ TEST_CASE("slip start: a table that turns as it begins to slip") {
   }
 }
 
-// Points of one body stop together, and rocking lower than the rounding of the gaps ends.
+// Points of one body stop together, and rocking lower than the rounding of the gaps ends. The place x is the one to
+// which runs at ever smaller tolerances converge.
 TEST_CASE("slip start: a thrown box comes to rest at every tolerance") {
   for (const double rtol : {1e-5, 1e-6, 1e-7, 1e-8, 1e-10}) {
     for (const double atol : {1e-9, 1e-11}) {

@@ -21,6 +21,7 @@
 #include "eom/contacts/admissible_forces.hpp"
 #include "eom/contacts/description.hpp"
 #include "eom/contacts/least_norm.hpp"
+#include "eom/contacts/slip_start.hpp"
 
 namespace eom::contacts {
 
@@ -126,7 +127,18 @@ class ContactForces {
   }
 
   /// The direction of slip of a sliding contact, times the share of the Coulomb force that its law gives.
-  std::array<double, 2> direction(std::size_t j) const;
+  std::array<double, 2> direction(std::size_t j) const {
+    const Description& at = contact(j);
+    std::array<double, 2> w{};
+    for (std::size_t a = 0; a < at.slip.size(); ++a) w[a] = rate(at.slip[a]);
+    if (at.width != none) {
+      const double size = std::sqrt(w[0] * w[0] + w[1] * w[1] + c_[at.width] * c_[at.width]);
+      if (size == 0) return {};  // a slip that constraints prescribe has no width
+      return {w[0] / size, w[1] / size};
+    }
+    if (at.slip.size() == 1) return {states_[j].mode == Mode::sliding_back ? -1.0 : 1.0, 0};
+    return led_direction(w, states_[j].direction, least_slip_, states_[j].starts ? start_slip_ : least_slip_);
+  }
   /// Whether the friction of a contact follows from its normal force and its slip.
   bool has_friction(std::size_t j) const {
     return is_closed(j) && !contact(j).slip.empty() && !(contact(j).sticks && states_[j].mode == Mode::closed);
@@ -385,5 +397,4 @@ class ContactForces {
 
 }  // namespace eom::contacts
 
-#include "eom/contacts/force_limits.hpp"    // the member that finds admissible forces
-#include "eom/contacts/slip_direction.hpp"  // the member that gives directions of slip
+#include "eom/contacts/force_limits.hpp"  // the member that finds admissible forces

@@ -19,16 +19,6 @@ struct Tolerances {
   double slip = 1e-12;   // in two directions
 };
 
-/// The slip up to which one that began with a slip of 0 keeps some of the direction in which it began, as a multiple of
-/// the least slip that has a direction. The rate of change of friction, mu N / (m slip), is bounded in that way. Where
-/// the slip grows as c t^2 and its direction turns at the rate k, friction along the slip is wrong by k^2 t^2 / 2, and
-/// the speed by an amount that grows with the power 3/2 of the slip at the end: it is of the size of the tolerance if
-/// that slip grows with its power 2/3.
-inline double start_of_slip(double rtol) {
-  constexpr double at_least = 2, share = 0.06;
-  return std::max(at_least, share / std::cbrt(std::max(rtol, 1e-15)));
-}
-
 /// Bounds below which a gap or a speed counts as zero, from the sizes met during the run.
 class Thresholds {
  public:

@@ -177,6 +177,7 @@ inline ContactModes::ContactModes(const Problem& problem, Model& model, Constrai
       rule_(problem.code->contacts, problem.states(), rhs_, functions_, Motion{this}),
       g_(rule_.functions()) {
   for (const Contact& contact : problem.code->contacts) two_directions_ = two_directions_ || contact.dimensions == 2;
+  model_.set_slip_starts(&velocities_.starts());
 }
 
 inline int ContactModes::Motion::impact(double t, std::span<double> x, int mode, std::size_t j, double e) const {
@@ -308,13 +309,12 @@ inline void ContactModes::shift_to_watched(double* g) {
     if (velocities_.starts().is_active(j)) g[contact_values * j] = 1;  // its slip has not got its own direction
 }
 
-/// Ends starts of contacts that do not slide in this mode. The right-hand side needs those that are left.
+/// Ends starts of contacts that do not slide in this mode.
 inline void ContactModes::update_starts(int mode) {
   for (std::size_t j = 0; j < problem_.code->contacts.size(); ++j) {
     const int digit = contact_digit(mode, j);
     if (digit % 3 == 0 || (problem_.code->contacts[j].unilateral && digit >= 3)) velocities_.starts().end(j);
   }
-  model_.set_slip_starts(&velocities_.starts());
 }
 
 inline EventAction ContactModes::handle_event(double& t, std::span<double> x, const Crossing& crossing,

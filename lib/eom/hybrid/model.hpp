@@ -184,13 +184,15 @@ class Model {
   /// dx = f(t, x) in the current mode.
   int rhs(double t, const double* x, double* dx) {
     if (sliding_.any()) return sliding_.evaluate(mode_, t, x, dx);
-    if (slip_starts_ != nullptr && slip_starts_->any()) return rhs_of_start(t, x, dx);
     if (const int code = solve_contacts(t, x); code != 0) return code;
     const double* u = inputs(t);
-    const int code = motion(t, x, u, mode_.data(), dx);
+    const double* const at = is_slip_starting() ? slip_starts_->lead(t, x, u) : x;
+    int code = motion(t, at, u, mode_.data(), dx);
     // A branch that is frozen beyond its surface may have no value there (a root). The unfrozen expression always has
     // one.
-    return code != 0 && mode_.has_frozen_branches() ? motion(t, x, u, mode_without_branches(), dx) : code;
+    if (code != 0 && mode_.has_frozen_branches()) code = motion(t, at, u, mode_without_branches(), dx);
+    if (at != x) std::copy_n(x + n_, n_, dx);  // rates are those of x
+    return code;
   }
 
   /// Slip in two directions that has just begun; null: none. They must outlive this object.
@@ -203,8 +205,7 @@ class Model {
   /// The derivatives are partial, at fixed inputs. If inputs vary between their jumps, df/dt is not available. `work`:
   /// whether the work is a state here; else it is a quadrature, without row and column.
   int jacobian(double t, const double* x, double* dfdx, double* dfdt, bool work) {
-    if (code_->jac == nullptr || sliding_.any() || forces_ || (slip_starts_ != nullptr && slip_starts_->any()))
-      return no_jacobian_here;
+    if (code_->jac == nullptr || sliding_.any() || forces_ || is_slip_starting()) return no_jacobian_here;
     const std::size_t n = code_->layout().size();
     if (work) dfdx_.resize(n * n);
     const double* u = inputs(t);
@@ -291,13 +292,7 @@ class Model {
       return of->code_->contact_rows(t, x, of->parameters(), u, of->mode_.data(), c);
     }
   };
-  /// While slip in two directions begins. Rates are those of x.
-  int rhs_of_start(double t, const double* x, double* dx) {
-    const double* u = inputs(t);
-    const int code = motion(t, slip_starts_->lead(t, x, u), u, mode_.data(), dx);
-    std::copy_n(x + n_, n_, dx);
-    return code;
-  }
+  bool is_slip_starting() const { return slip_starts_ != nullptr && slip_starts_->any(); }
   int accelerations(double t, const double* x, const double* u, double* qddot) {
     dx_.resize(code_->layout().size());
     const auto evaluate = [&](const int* mode) {

@@ -2,9 +2,8 @@
 // Slip in two directions that has just begun, of contacts in compiled modes. In: the direction in which it began. Out:
 // the state at which the right-hand side is evaluated while the slip is small.
 //
-// Friction changes its direction at the rate mu N / (m slip), which no explicit method follows at small slip. Until the
-// slip is large enough, its direction is led from the one in which it began to its own (contacts/slip_direction.hpp
-// does the same for contacts whose forces are solved for). The other effects of such a slip are below the tolerance.
+// The direction of friction is that of contacts/slip_start.hpp. Compiled code has friction against the slip of the
+// state, which is changed here. The other effects of so small a slip are below the tolerance.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +12,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "eom/contacts/thresholds.hpp"
+#include "eom/contacts/slip_start.hpp"
 #include "eom/hybrid/problem.hpp"
 #include "eom/modes/mode_array.hpp"
 
@@ -49,10 +48,7 @@ class SlipStarts {
     if (!any() || !evaluate(t, x, u)) return;
     for (std::size_t j = 0; j < starts_.size(); ++j) {
       if (!starts_[j].active) continue;
-      const std::array<double, 2> w = slip(j);
-      const double speed = std::hypot(w[0], w[1]);
-      const double along = w[0] * starts_[j].direction[0] + w[1] * starts_[j].direction[1];
-      if (speed > largest(j) || (speed > least_[j] && along < 0.5 * speed)) starts_[j].active = false;
+      if (contacts::has_started(slip(j), starts_[j].direction, least_[j], largest(j))) starts_[j].active = false;
     }
   }
 
@@ -63,14 +59,10 @@ class SlipStarts {
     x_.assign(x, x + problem_.states());
     for (std::size_t j = 0; j < starts_.size(); ++j) {
       if (!starts_[j].active) continue;
-      const std::array<double, 2> w = slip(j), d = starts_[j].direction;
-      const double speed = std::hypot(w[0], w[1]);
+      const std::array<double, 2> w = slip(j);
+      const double speed = std::hypot(w[0], w[1]), size = std::max(speed, 1e-3 * least_[j]);
       if (speed >= largest(j)) continue;
-      const double own = std::max(0.0, (speed - least_[j]) / (largest(j) - least_[j]));
-      std::array<double, 2> to = d;
-      if (own > 0) to = {(1 - own) * d[0] + own * w[0] / speed, (1 - own) * d[1] + own * w[1] / speed};
-      const double length = std::hypot(to[0], to[1]), size = std::max(speed, 1e-3 * least_[j]);
-      if (!(length > 0)) continue;
+      const std::array<double, 2> to = contacts::led_direction(w, starts_[j].direction, least_[j], largest(j));
       // The smallest change of the rates that changes the slip by this much.
       double aa = 0, ab = 0, bb = 0;
       for (std::size_t i = 0; i < n; ++i) {
@@ -79,7 +71,7 @@ class SlipStarts {
       }
       const double determinant = aa * bb - ab * ab;
       if (!(determinant > 1e-12 * aa * bb)) continue;
-      const double first = size * to[0] / length - w[0], second = size * to[1] / length - w[1];
+      const double first = size * to[0] - w[0], second = size * to[1] - w[1];
       const double by_a = (bb * first - ab * second) / determinant, by_b = (aa * second - ab * first) / determinant;
       for (std::size_t i = 0; i < n; ++i) x_[n + i] += by_a * slope(j, 0, i) + by_b * slope(j, 1, i);
     }

@@ -264,14 +264,10 @@ class SolvedContacts {
     const double least = thresholds_.least_slip(x);
     forces_.set_least_slip(least, thresholds_.start_slip(least));
   }
-  /// Whether a slip that began is large enough to end, or has a direction of its own away from that in which it began.
   bool has_started(std::size_t j) const {
-    const double speed = forces_.slip_speed(j);
-    if (speed <= forces_.least_slip()) return false;
-    const std::array<double, 2>& began = forces_.states()[j].direction;
-    double along = 0;
-    for (std::size_t a = 0; a < 2; ++a) along += began[a] * forces_.rate(forces_.contact(j).slip[a]);
-    return speed > forces_.start_slip() || along < 0.5 * speed;
+    const std::vector<contacts::Row>& slip = forces_.contact(j).slip;
+    return contacts::has_started({forces_.rate(slip[0]), forces_.rate(slip[1])}, forces_.states()[j].direction,
+                                 forces_.least_slip(), forces_.start_slip());
   }
 
   double bound_of_friction(std::size_t j, double rounding) const {
