@@ -91,8 +91,7 @@ class ContactForces {
   /// Whether contact j is closed and has static friction.
   bool is_sticking(std::size_t j) const { return contact(j).sticks && states_[j].mode == Mode::closed; }
 
-  /// The least slip in two directions that has a direction of its own, and the slip up to which one that began is led
-  /// from the direction in which it began to its own.
+  /// The least slip in two directions that has a direction, and the slip at which a start ends (slip_start.hpp).
   void set_least_slip(double least, double start) { least_slip_ = least, start_slip_ = start; }
   /// The speeds set by set_least_slip().
   double least_slip() const { return least_slip_; }
