@@ -313,7 +313,7 @@ class Printer {
   }
 
   bool in_lanes() const { return !dialect_.lane_prefix.empty(); }
-  bool is_rhs() const { return function_.name == "rhs" || function_.name == "rhs_prepared"; }
+  bool is_rhs() const { return program::is_right_hand_side(function_); }
   /// Unused-argument casts of a part, which has all arguments of the function.
   std::string all_arguments() const {
     if (!dialect_.is_typed) return "";

@@ -58,7 +58,8 @@ std::string column_name(const std::string& function, const ModelNames& names, st
 std::string result_entry_name(const program::Function& function, const ModelNames& names, std::size_t result,
                               std::size_t entry) {
   const std::size_t n = names.acceleration.size(), all = names.state.size();
-  if (function.name == "rhs" && eom::StateLayout{n}.is_rate(entry)) return names.acceleration[entry - n];
+  if ((function.name == "rhs" || function.name == "rhs_open") && eom::StateLayout{n}.is_rate(entry))
+    return names.acceleration[entry - n];
   if (function.name == "jac" && result == 0 && entry % all == 0) return fmt::format("d/d {}", names.state[entry / all]);
   if (function.name == "jac_p" && entry % all == 0) return fmt::format("d/d {}", names.parameters[entry / all]);
   if (function.name == "jac_u" && entry % all == 0) return fmt::format("d/d {}", names.inputs[entry / all]);

@@ -13,8 +13,6 @@ namespace {
 using program::Function;
 using program::PivotTest;
 
-bool is_rhs(const Function& function) { return function.name == "rhs" || function.name == "rhs_prepared"; }
-
 class Assignment : Operations {
  public:
   Assignment(const Function& function, std::span<const double> default_inputs, std::size_t free_count,
@@ -102,7 +100,7 @@ class Assignment : Operations {
       }
       step(Action::end_result, 0, {}, r++);
     }
-    if (!is_rhs(function())) return;
+    if (!program::is_right_hand_side(function())) return;
     const auto dx = std::find_if(function().results.begin(), function().results.end(),
                                  [](const program::Result& result) { return !result.is_test(); });
     written().finite_from = static_cast<std::uint32_t>(free_count_);

@@ -66,6 +66,7 @@ run::Code bound_code(const abi::CompiledFunctions& functions, const program::Pro
   });
 #include "abi/functions.inc"
 #undef ABI_FUNCTION
+  if (!program.open_saves_work()) code.rhs_open = nullptr;
   return code;
 }
 

@@ -150,6 +150,13 @@ eom::Features wanted_features(const std::string& solver, bool every, eom::Featur
   return wanted;
 }
 
+/// Whether there are contacts whose forces are inputs, and all of them can be open.
+bool can_be_open(const system::EquationSystem& system) {
+  return !system.contacts_with_inputs.empty() &&
+         std::all_of(system.contacts_with_inputs.begin(), system.contacts_with_inputs.end(),
+                     [](const system::ContactWithInputs& contact) { return contact.unilateral; });
+}
+
 }  // namespace
 
 program::Request functions_for_run(const DerivedModel& derived, const run::Scene& scene, const std::string& solver,
@@ -159,9 +166,12 @@ program::Request functions_for_run(const DerivedModel& derived, const run::Scene
   const eom::Features features = run::features_of(system, has_kinks);
   run::require_eligible(solver, features | run::features_of(scene));
   program::Request wanted;
-  wanted.outputs = code_outputs(derived, scene, !energy_is_conserved(derived));
+  const bool watch_power = !energy_is_conserved(derived);
+  wanted.outputs = code_outputs(derived, scene, watch_power);
   if (!system.active.empty() || system.has_contacts()) wanted.with = {"mass", "constraints"};
   if (!system.contacts_with_inputs.empty()) wanted.with.push_back("contact_rows");
+  if (can_be_open(system)) wanted.with.push_back("rhs_open");
+  if (watch_power) wanted.with.push_back("power");
   if (!derived.model.events.empty() || !system.contacts.empty() || has_kinks) wanted.with.push_back("events");
   if (!system.samples.empty() || std::any_of(system.events.begin(), system.events.end(),
                                              [](const system::Event& event) { return !event.reset.empty(); }))

@@ -14,6 +14,7 @@ program::Program with_every_function(DerivedModel& derived) {
   request.with = abi::optional_functions();
   std::erase(request.with, "outputs");  // outputs are requested by name
   const system::EquationSystem& system = derived.candidates.front();
+  if (system.contacts_with_inputs.empty()) std::erase(request.with, "rhs_open");  // it is rhs
   for (const system::Output& output : system.outputs) request.outputs.push_back(output.name);
   // `emit` writes few outputs, and all of their derivatives.
   constexpr std::size_t most_derivatives = 4000;

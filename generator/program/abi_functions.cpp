@@ -183,6 +183,19 @@ FunctionExpressions AbiFunctions::rhs() {
   return function;
 }
 
+FunctionExpressions AbiFunctions::rhs_open() {
+  FunctionExpressions function = rhs();
+  function.name = "rhs_open";
+  bool solved = false;
+  function.results.insert(function.results.begin() + 1, {"power", {substitute_solution(system_.power, solved)}});
+  std::map<Symbol, Ref> none;
+  for (const auto& [force, input] : system_.contact_inputs) none[input] = system_.dag->zero();
+  Substitution without_forces(*system_.dag, std::move(none));
+  for (ResultExpressions& result : function.results)
+    for (Ref& entry : result.entries) entry = without_forces(entry);
+  return function;
+}
+
 const symbolic::VanishingNorms& AbiFunctions::norms() {
   if (norms_) return *norms_;
   std::vector<Ref> roots = qddot_;
@@ -313,6 +326,14 @@ FunctionExpressions AbiFunctions::reactions() {
   for (const auto& reaction : system_.reactions) {
     function.results[0].entries.push_back(substitute_solution(reaction.value, solved));
   }
+  if (solved) add_solution(function);
+  return function;
+}
+
+FunctionExpressions AbiFunctions::power() {
+  FunctionExpressions function = empty_function("power");
+  bool solved = false;
+  function.results[0].entries = {substitute_solution(system_.power, solved)};
   if (solved) add_solution(function);
   return function;
 }

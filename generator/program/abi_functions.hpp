@@ -63,6 +63,8 @@ class AbiFunctions {
                Ties ties = Ties::ascending, bool hold = false);
 
   FunctionExpressions rhs();
+  FunctionExpressions rhs_open();  // without forces of contacts
+  FunctionExpressions power();
   FunctionExpressions jac();
   FunctionExpressions jac_p(std::size_t parameters);
   FunctionExpressions jac_u(std::size_t inputs);

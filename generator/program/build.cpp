@@ -242,6 +242,8 @@ FunctionExpressions function_expressions(AbiFunctions& functions, const std::str
       {"reactions", &AbiFunctions::reactions},
       {"events", &AbiFunctions::events},
       {"contact_rows", &AbiFunctions::contact_rows},
+      {"rhs_open", &AbiFunctions::rhs_open},
+      {"power", &AbiFunctions::power},
       {"resets", &AbiFunctions::resets}};
   if (const auto found = formulas.find(name); found != formulas.end()) return (functions.*found->second)();
   const auto count = [&](std::size_t in_model, symbolic::SymbolKind kind) {

@@ -92,6 +92,11 @@ struct Function {
   Operations operations;
 };
 
+/// Whether a function writes dx: its values are tested to be finite.
+inline bool is_right_hand_side(const Function& function) {
+  return function.name == "rhs" || function.name == "rhs_prepared" || function.name == "rhs_open";
+}
+
 /// Recurrences of the Taylor series of `rhs` (taylor.hpp). The array w of `next` contains `zeros` values of order 0,
 /// the sums S, then 1 if k is 1 and else 0, then 1/k.
 struct Taylor {
@@ -147,6 +152,8 @@ struct Program {
     for (const Program& other : chart_variants) count += count > 0 ? other.result_size("prepare") : 0;
     return count;
   }
+  /// Whether `rhs_open` exists, and takes less work than the right-hand side with forces of contacts.
+  bool open_saves_work() const;
   std::size_t event_count() const { return result_size("events"); }  // length of the array g
   eom::StateLayout layout() const { return {free.size(), states.size() - discrete, discrete}; }
   std::size_t state_count() const { return layout().size(); }

@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "verify/abi_arguments.hpp"
 #include "verify/applied_forces.hpp"
 #include "verify/friction_law.hpp"
 #include "verify/function_comparisons.hpp"

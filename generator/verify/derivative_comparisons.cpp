@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "symbolic/evaluate.hpp"
+#include "verify/abi_arguments.hpp"
 #include "verify/applied_forces.hpp"
 #include "verify/central_differences.hpp"
 #include "verify/function_comparisons.hpp"

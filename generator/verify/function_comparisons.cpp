@@ -14,6 +14,7 @@
 
 #include "symbolic/evaluate.hpp"
 #include "system/contact_set.hpp"
+#include "verify/abi_arguments.hpp"
 #include "verify/applied_forces.hpp"
 #include "verify/central_differences.hpp"
 #include "verify/derivative_comparisons.hpp"
@@ -72,6 +73,8 @@ class FunctionComparisons {
         {"events", &FunctionComparisons::events},
         {"resets", &FunctionComparisons::resets},
         {"contact_rows", &FunctionComparisons::contact_rows},
+        {"rhs_open", &FunctionComparisons::open},
+        {"power", &FunctionComparisons::power},
         {"frames", &FunctionComparisons::frames},
         {"energy_gradients", &FunctionComparisons::energy_gradients},
         {"taylor", &FunctionComparisons::taylor}};
@@ -155,8 +158,21 @@ class FunctionComparisons {
     return result;
   }
 
-  void prepared(const AbiResults& values) {
-    const std::optional<AbiResults> rhs = program_.call("rhs", at_, oracle_.digits());
+  void prepared(const AbiResults& values) { same_as_rhs("rhs_prepared", "its rhs", values, at_); }
+
+  void open(const AbiResults& values) {
+    AbiArguments without_forces = at_;
+    for (const auto& [force, input] : s_.contact_inputs) without_forces.u.at(input.index) = 0;
+    same_as_rhs("rhs_open", "its rhs without forces of contacts", values, without_forces);
+    SymbolValues lookup = lookup_;
+    lookup.state.inputs = without_forces.u;
+    note("rhs_open", "its power without forces of contacts", against(values, 1, {s_.power}, lookup));
+  }
+
+  void power(const AbiResults& values) { note("power", system_name(s_), against(values, 0, {s_.power}, lookup_)); }
+
+  void same_as_rhs(const char* function, const char* what, const AbiResults& values, const AbiArguments& at) {
+    const std::optional<AbiResults> rhs = program_.call("rhs", at, oracle_.digits());
     if (!rhs) return;
     // An exact 0 in one of them may be a rounded sum in the other.
     const AbiResults own = sizes("rhs", *rhs);
@@ -164,7 +180,7 @@ class FunctionComparisons {
     double largest = 0;
     for (std::size_t i = 0; i < values[0].size(); ++i)
       largest = std::max(largest, relative_difference(values[0][i] - (*rhs)[0][i], sizes_[0][i] + own[0][i]));
-    note("rhs_prepared", "its rhs", largest);
+    note(function, what, largest);
   }
 
   /// Symbol values without friction and with inputs at their defaults, as in the functions without a mode.
@@ -424,20 +440,6 @@ class FunctionComparisons {
 };
 
 }  // namespace
-
-Real rounding_scale(double bound, const Precision& precision) {
-  return precision.round(exact(bound) * cln::expt(cln::cl_RA(2), cln::cl_I(53)));
-}
-
-AbiArguments arguments_at(const EquationSystem& s, const State& state, const std::vector<int>& mode) {
-  AbiArguments at{state.t, {}, state.parameters, state.inputs, mode, 4};
-  for (const std::uint32_t i : s.free) at.x.push_back(state.q[i]);
-  for (const std::uint32_t i : s.free) at.x.push_back(state.qdot[i]);
-  for (const system::FirstOrderState& z : s.states) at.x.push_back(state.z[z.symbol.index]);
-  // The longest vector of a function: two entries per state.
-  for (std::size_t j = 0; j < 2 * at.x.size(); ++j) at.v.push_back(direction_component(j));
-  return at;
-}
 
 void compare_functions(const Subjects& subjects, const SystemValues& values, const Oracle& oracle,
                        const std::vector<int>& mode, ComparisonTable& tally) {

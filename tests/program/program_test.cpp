@@ -123,9 +123,34 @@ TEST_CASE("program: unknown functions and outputs are rejected by name") {
         "regressor, coriolis, gravity, mass, momenta, momenta_jac, momenta_jac_p, momenta_jac_u, energy_gradients, "
         "momentum, constraints, reactions, "
         "reactions_jac, reactions_jac_p, reactions_jac_u, outputs, outputs_jac, outputs_jac_p, outputs_jac_u, events, "
-        "contact_rows, resets, frames, taylor");
+        "contact_rows, rhs_open, power, resets, frames, taylor");
   CHECK(message({"jacobian"}, {}).starts_with("there is no function `jacobian`"));
   CHECK(message({}, {"energie"}) == "there is no output `energie` / outputs of this model: energy, kinetic, potential");
+}
+
+TEST_CASE("program: the right-hand side of open contacts reads none of their forces, and takes less work") {
+  system::EquationSystem system = pendulum();
+  Dag& dag = *system.dag;
+  const Symbol force{SymbolKind::friction, 0, 0}, input{SymbolKind::input, 0, 0};
+  const SystemBuilder k{system.dag};
+  const Scalar push = k.s(dag.symbol(force)), given = k.u(1);
+  system.f[0] = (k.s(system.f[0]) + push * k.cos(k.q(0)) + given).ref;
+  system.power = ((push * k.cos(k.q(0)) + given) * k.q(0, 1)).ref;
+  system.contact_inputs[force] = input;
+  program::Program built = build(system, {"rhs_open", "power"});
+  CHECK(built.open_saves_work());
+  const program::Function &rhs = built.functions[0], &open = built.functions[1], &power = built.functions[2];
+  auto pushed = arguments_at<double>(system, 3), without = pushed;
+  without.u[0] = 0;
+  const auto expected = program::interpret(rhs, without).results[0];
+  const auto found = program::interpret(open, pushed).results;
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    CHECK(found[0][i] == doctest::Approx(expected[i]).epsilon(tolerances::unrolled_solve));
+  CHECK(found[1][0] == doctest::Approx(without.u[1] * without.x[1]).epsilon(tolerances::unrolled_solve));
+  CHECK(program::interpret(power, without).results[0][0] == doctest::Approx(found[1][0]));
+  CHECK(program::interpret(power, pushed).results[0][0] != doctest::Approx(found[1][0]));
+  built.functions.erase(built.functions.begin() + 1);
+  CHECK_FALSE(built.open_saves_work());
 }
 
 TEST_CASE("program: an expression that does not follow from the state is rejected") {

@@ -147,7 +147,7 @@ class StatementPrinter {
       }
       if (optional) line(language_.end_if);
     }
-    if (function_.name == "rhs" || function_.name == "rhs_prepared") test_finite();
+    if (program::is_right_hand_side(function_)) test_finite();
     if (!language_.end.empty()) line(language_.end);
   }
 

@@ -175,7 +175,7 @@ std::string code_text(const program::Program& program, const eom::hybrid::Code& 
   Statements s("code");
   const auto bind = [&](const std::string& function) { s.line(fmt::format("code.{0} = {1}_{0};", function, name)); };
   for (const program::Function& f : program.functions) {
-    if (is_of_runs(f.name)) bind(f.name);
+    if (is_of_runs(f.name) && (f.name != "rhs_open" || program.open_saves_work())) bind(f.name);
   }
   if (program.taylor) bind("taylor");
   if (!program.charts.empty()) {

@@ -33,6 +33,10 @@ struct Code {
   int (*events)(double, const double*, const double*, const double*, const int*, double*) = nullptr;
   int (*resets)(double, const double*, const double*, const double*, const int*, double*) = nullptr;
   int (*contact_rows)(double, const double*, const double*, const double*, const int*, double*) = nullptr;
+  // rhs and power without the forces of `contact_set`; null if not emitted.
+  int (*rhs_open)(double, const double*, const double*, const double*, const int*, double*, double*) = nullptr;
+  // What `outputs` writes for the power alone; null if not emitted.
+  int (*power)(double, const double*, const double*, const double*, const int*, double*) = nullptr;
   std::size_t reset_values = 0;  // number of values that `resets` writes
   // For implicit solvers. They use differences if it is null, and for df/dt with inputs that vary in time.
   int (*jac)(double, const double*, const double*, const double*, const int*, double*, double*) = nullptr;

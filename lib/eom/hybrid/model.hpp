@@ -164,7 +164,7 @@ class Model {
   }
   /// Solves for the forces of contacts at a state. They are then among inputs(t).
   int solve_contacts(double t, const double* x) const {
-    if (!forces_ || (flight_ && *flight_ == forces_->changes())) return 0;
+    if (!forces_ || is_in_flight()) return 0;
     if (t == solved_t_ && std::equal(solved_x_.begin(), solved_x_.end(), x)) return 0;
     forget_contact_forces();
     std::fill(u_.begin() + static_cast<std::ptrdiff_t>(scene_inputs_), u_.end(), 0.0);
@@ -292,6 +292,8 @@ class Model {
       return of->code_->contact_rows(t, x, of->parameters(), u, of->mode_.data(), c);
     }
   };
+  /// Whether all contacts are known to be open: their forces among the inputs are 0.
+  bool is_in_flight() const { return flight_ && *flight_ == forces_->changes(); }
   bool is_slip_starting() const { return slip_starts_ != nullptr && slip_starts_->any(); }
   int accelerations(double t, const double* x, const double* u, double* qddot) {
     dx_.resize(code_->layout().size());
@@ -346,11 +348,14 @@ class Model {
   int add_work(double t, const double* x, std::size_t n, double* dfdx, double* dfdt);
 
   int motion(double t, const double* x, const double* u, const int* mode, double* dx) {
+    double* const power = problem_.power ? dx + code_->layout().size() : nullptr;
+    if (code_->rhs_open != nullptr && is_in_flight()) return code_->rhs_open(t, x, parameters(), u, mode, dx, power);
     const int code = w_.empty() ? code_->rhs(t, x, parameters(), u, mode, dx)
                                 : code_->rhs_prepared(t, x, parameters(), w_.data(), u, mode, dx);
-    if (code != 0 || !problem_.power) return code;
+    if (code != 0 || power == nullptr) return code;
+    if (code_->power != nullptr) return code_->power(t, x, parameters(), u, mode, power);
     const int watched = code_->outputs(t, x, parameters(), u, mode, y_.data());
-    dx[code_->layout().size()] = y_[*problem_.power];
+    *power = y_[*problem_.power];
     return watched;
   }
 
