@@ -61,6 +61,7 @@ struct Rule {
   Type type = Type::not_both;
   std::string first, second;
   std::string what, remedy;
+  std::vector<std::string> others = {};  // of one_of: further keys
 };
 
 /// The objects over which a term is summed, and the names that its formula may use:

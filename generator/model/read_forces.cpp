@@ -156,7 +156,9 @@ void ForcesReader::check_rules(const ForceDraft& open) const {
     using Type = forces::Rule::Type;
     if ((rule.type == Type::not_both && first && second) || (rule.type == Type::needs && first && !second))
       source_.fail(key_span(open.table, rule.first), fmt::format("{} {}", open.what, rule.what), rule.remedy);
-    if (rule.type == Type::one_of && !first && !second)
+    const bool other = std::any_of(rule.others.begin(), rule.others.end(),
+                                   [&](const std::string& key) { return open.table.find(key) != nullptr; });
+    if (rule.type == Type::one_of && !first && !second && !other)
       source_.fail(open.table.span, fmt::format("{} {}", open.what, rule.what), rule.remedy);
   }
 }

@@ -80,7 +80,7 @@ class Run {
     if (options_.interrupt != nullptr && options_.interrupt->load(std::memory_order_relaxed))
       return end(Outcome::interrupted, "stopped from outside");
     if (steps_ + rejected_ >= options_.max_steps)
-      return end(Outcome::max_steps, "all " + std::to_string(options_.max_steps) +
+      return end(Outcome::max_steps, "all " + std::to_string(options_.steps_before + options_.max_steps) +
                                          " steps of max_steps were made before t = " + printed(t_end_));
     const double t_next = next_time();
     bool moved = false;

@@ -111,10 +111,11 @@ struct Options {
   /// if the step may be taken as it is. It covers features between the points at which a method evaluates the
   /// equations. For fixed steps the result is ignored.
   std::function<double(const StepView&)> step_limit = {};
-  double fixed_step = 0;        // > 0: steps of this size without error control, for any method; required by rk4
-  std::size_t event_parts = 1;  // number of equal steps up to a breaking event that ends a step
-  bool events_at_end = true;    // events at t1 belong to the run; false: to its continuation
-  int series_order = 0;         // of `taylor`, and of `radau` (5, 9, 13); 0: chosen and adapted from step to step
+  double fixed_step = 0;         // > 0: steps of this size without error control, for any method; required by rk4
+  std::size_t event_parts = 1;   // number of equal steps up to a breaking event that ends a step
+  std::size_t steps_before = 0;  // of the same run, before this part of it: for messages
+  bool events_at_end = true;     // events at t1 belong to the run; false: to its continuation
+  int series_order = 0;          // of `taylor`, and of `radau` (5, 9, 13); 0: chosen and adapted from step to step
   std::size_t max_steps = 50'000'000;            // accepted and rejected together
   std::size_t quadratures = 0;                   // trailing components of x that are excluded from the error norm
   const std::atomic<bool>* interrupt = nullptr;  // polled once per step

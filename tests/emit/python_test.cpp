@@ -68,6 +68,18 @@ TEST_CASE("target python: the module wraps every optional function of the ABI") 
     CHECK_MESSAGE(module.find(fmt::format("_{0} = _function(\"{0}\"", name)) != std::string::npos, name);
 }
 
+TEST_CASE("target python: the sign of a number whose comparisons cannot be subtracted, as those of NumPy") {
+  compiles_and_imports(examples()[0],
+                       "\n"
+                       "class Truth:\n"
+                       "  def __init__(self, of): self.of = of\n"
+                       "  def __bool__(self): return self.of\n"
+                       "class Number(float):\n"
+                       "  def __gt__(self, other): return Truth(float(self) > other)\n"
+                       "  def __lt__(self, other): return Truth(float(self) < other)\n"
+                       "assert [m._sign(Number(v)) for v in (-2, 0, 3)] == [-1, 0, 1]\n");
+}
+
 TEST_CASE("target python: simulate ends with the outcomes of eomgen run") {
   compiles_and_imports(examples()[0],
                        "assert m._ERRORS == {1: 'singular_mass_matrix', 2: 'chart_left', 3: 'friction_no_solution', "

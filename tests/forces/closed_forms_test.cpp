@@ -158,6 +158,36 @@ outputs = ["first_integral", "psi_ddot"]
   CHECK(run.simulation.certificate.pass);
 }
 
+TEST_CASE("bushing: each of its keys may stand alone") {
+  const auto body = [](const std::string& keys) {
+    return R"toml(
+[[body]]
+name = "B"
+mass = "2 kg"
+inertia = "0.5 kg*m^2"
+position = { cartesian = ["x", "y"] }
+rotation = { axis = "E3", angle = "psi" }
+[[force]]
+bushing = { bodies = ["ground", "B"], at = ["origin", "B"], )toml" +
+           keys + R"toml( }
+[scene.default]
+t = [0, 2]
+initial = { x = 1, x_dot = 1, psi_dot = 1, psi = 0.5 }
+)toml";
+  };
+  const FinishedRun pushed = run_tight("bushing_pushed", body("coefficient = \"3 N*s/m\"")),
+                    turned = run_tight("bushing_turned", body("rotational_coefficient = \"2 N*m*s\"")),
+                    held = run_tight("bushing_held", body("rotational_stiffness = \"4 N*m\""));
+  CHECK(std::abs(pushed.final("x_dot") - std::exp(-3.0)) < same);
+  CHECK(std::abs(pushed.final("psi_dot") - 1) < same);
+  CHECK(std::abs(turned.final("psi_dot") - std::exp(-8.0)) < same);
+  CHECK(std::abs(turned.final("x_dot") - 1) < same);
+  // J/2 psi_dot^2 + K/2 sin(psi)^2 is constant.
+  const double psi = held.final("psi"), rate = held.final("psi_dot");
+  CHECK(std::abs(rate * rate + 8 * std::sin(psi) * std::sin(psi) - 1 - 8 * std::sin(0.5) * std::sin(0.5)) < same);
+  CHECK(std::abs(held.final("x_dot") - 1) < same);
+}
+
 TEST_CASE("bushing: two free bodies follow Newton's and Euler's equations; momentum is conserved") {
   const FinishedRun run = run_tight("bushing_free",
                                     R"toml(

@@ -7,7 +7,9 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -219,6 +221,71 @@ TEST_CASE("published: the IFToMM pendulum follows its closed form") {
   CHECK(run.final("y") == doctest::Approx(-std::cos(swing.angle)).epsilon(1e-10));
   // 2 lambda (x, y) is the force of the rod, 3 m g cos(angle) from rest at the horizontal.
   CHECK(run.final("reaction.rod") * 2 == doctest::Approx(-3 * 9.81 * std::cos(swing.angle)).epsilon(1e-10));
+}
+
+// Peaucellier's cell: six rods, whose constraints lose two ranks at once where C and D meet. The expected values follow
+// from the angle and the opening of the cell as coordinates, in which the motion is regular.
+TEST_CASE("a Peaucellier cell passes its dead positions at every tolerance") {
+  const std::string path = (std::filesystem::temp_directory_path() / "eomgen_peaucellier_test.toml").string();
+  std::string text = R"toml(format = 1
+[parameters]
+a = "0.5 m"
+b = "0.3 m"
+c = "0.15 m"
+g = "9.81 m/s^2"
+[coordinates]
+th = "rad"
+[[particle]]
+name = "B"
+mass = "1 kg"
+position = "(c + c*cos(th))*E1 + c*sin(th)*E2"
+[[particle]]
+name = "C"
+mass = "1 kg"
+position = { cartesian = ["xc", "yc"] }
+[[particle]]
+name = "D"
+mass = "2 kg"
+position = { cartesian = ["xd", "yd"] }
+[[particle]]
+name = "P"
+mass = "3 kg"
+position = { cartesian = ["xp", "yp"] }
+[[force]]
+gravity = "-g*E2"
+[scene.default]
+t = [0, 2]
+initial = { th = "20 deg" }
+guess = { xc = 0.4, yc = 0.3, xd = 0.4, yd = -0.1, xp = 0.7, yp = 0.2 }
+)toml";
+  for (const auto& [name, psi] : {std::pair{"oc", "norm(C) - a"},
+                                  {"od", "norm(D) - a"},
+                                  {"bc", "norm(C - B) - b"},
+                                  {"bd", "norm(D - B) - b"},
+                                  {"pc", "norm(P - C) - b"},
+                                  {"pd", "norm(P - D) - b"}})
+    text += std::string("[[constraint]]\nname = \"") + name + "\"\nholonomic = \"" + psi + "\"\n";
+  test::write_text(path, text);
+  const test::FinishedRun run =
+      test::run_model(path, [](pipeline::SimulationRequest& request) { request.estimate = false; });
+  for (const double tolerance : {1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12}) {
+    CAPTURE(tolerance);
+    run::Overrides overrides;
+    overrides.solver = "dop853";
+    overrides.rtol = overrides.atol = tolerance;
+    const run::RunResult result = pipeline::rerun(run.simulation, overrides, false);
+    REQUIRE(result.outcome == eom::Outcome::done);
+    // Rounding over the distance from a dead position, which the steps keep, limits all of them to some 1e-7.
+    constexpr double known = 2e-6;
+    for (const auto& [name, value] : result.final) {
+      if (name == "th") CHECK(std::abs(value + 0.882947929) < known);
+      if (name == "th_dot") CHECK(std::abs(value - 7.04969543) < 10 * known);
+    }
+    REQUIRE(result.events.size() == 3);
+    const std::array<double, 3> times{0.37857979, 1.10562902, 1.8627886};
+    for (std::size_t k = 0; k < 3; ++k) CHECK(std::abs(result.events[k].t - times[k]) < 1e-4);
+    CHECK(result.statistics.steps < 400);
+  }
 }
 
 TEST_CASE(

@@ -175,6 +175,103 @@ TEST_CASE("events at the same time occur in declared order, and those that a res
   CHECK(run.final("y_dot") == doctest::Approx(-0.5).epsilon(1e-13));
 }
 
+// A particle at x = t. The functions are exactly zero at t = 1 and t = 1.5, where segments of the run end.
+TEST_CASE("an event at the time of a sample, or of a jump of an input, occurs once") {
+  const std::string events = R"([discrete]
+n = 0
+k = 0
+[[event]]
+name = "tick"
+when = "t - 1"
+set = { n = "n + 1" }
+[[event]]
+name = "later"
+when = "t - 1.5"
+[[event]]
+name = "half"
+when = "x - 1"
+[[event]]
+name = "touch"
+when = "(t - 1)^2"
+[[event]]
+name = "falls"
+when = "1 - t"
+direction = "up"
+)";
+  const std::string sample = "[[sample]]\nevery = 0.5\nset = { k = \"k + 1\" }\n";
+  const std::string table = "[inputs]\nF = {}\n[[force]]\ngeneralized = { y = \"F\" }\n",
+                    values = "inputs = { F = { t = [0, 1, 1.5], value = [0, 2, 1] } }\n";
+  for (const auto& [before, after] : {std::pair{sample, std::string()}, {table, values}}) {
+    for (const std::string solver : {"dop853", "dopri5", "radau5", "rk4", "taylor"}) {
+      CAPTURE(before);
+      CAPTURE(solver);
+      const std::string step = solver == "rk4" ? "step = 0.01\n" : "",
+                        scene = "[scene.default]\nt = [0, 3]\ninitial = { x_dot = 1 }\nsolver = \"" + solver + "\"\n";
+      const test::FinishedRun run = run_text(events + before + scene + step + after);
+      CHECK(run.simulation.result.outcome == eom::Outcome::done);
+      CHECK(run.final("n") == 1);
+      CHECK(times_of(run, "tick") == std::vector<double>{1});
+      CHECK(times_of(run, "later") == std::vector<double>{1.5});
+      REQUIRE(times_of(run, "half").size() == 1);
+      CHECK(times_of(run, "half")[0] == doctest::Approx(1).epsilon(followed));
+      CHECK(times_of(run, "touch").empty());
+      CHECK(times_of(run, "falls").empty());
+    }
+  }
+}
+
+// A mass of 1 kg with the force -100 max(0, x - 0.5) - 0.3 x. Between its touches of the bumper it is a harmonic
+// oscillator, in it another one; x(4) follows from these pieces.
+TEST_CASE("a reset at the place where a force begins leaves the force as it is") {
+  for (const std::string force :
+       {"-100*max(0, x - B) - 0.3*x", "-0.3*x - 100*(abs(x - B) + x - B)/2", "if(x > B, -100*(x - B), 0) - 0.3*x"}) {
+    std::vector<double> ends;
+    for (const bool counts : {false, true}) {
+      for (const std::string solver : {"dop853", "dopri5", "radau5", "taylor"}) {
+        CAPTURE(force);
+        CAPTURE(counts);
+        CAPTURE(solver);
+        const std::string event = "[discrete]\nn = 0\n[[event]]\nname = \"touch\"\nwhen = \"x - B\"\n";
+        const test::FinishedRun run =
+            run_text("[parameters]\nB = 0.5\n[[force]]\ngeneralized = { x = \"" + force + "\" }\n" + event +
+                         (counts ? "set = { n = \"n + 1\" }\n" : "") +
+                         "[scene.default]\nt = [0, 4]\ninitial = { x_dot = 1 }\nsolver = \"" + solver + "\"\n",
+                     1e-10);
+        CHECK(run.simulation.result.outcome == eom::Outcome::done);
+        CHECK(times_of(run, "touch").size() == (counts ? 4 : 2));  // a reset is reported before and after it
+        ends.push_back(run.final("x"));
+      }
+    }
+    for (const double end : ends) CHECK(end == doctest::Approx(ends.front()).epsilon(1e-7));
+    // In the bumper: x = (50 + a cos(w s) + b sin(w s))/w^2 with w^2 = 100.3.
+    const double slow = std::sqrt(0.3), w = std::sqrt(100.3), meets = std::asin(0.5 * slow) / slow,
+                 v = std::cos(slow * meets);
+    const double a = 0.5 - 50 / (w * w), b = v / w, inside = 2 * std::atan2(b, a) / w;
+    const double left = 4 - meets - inside;
+    CHECK(ends.front() ==
+          doctest::Approx(0.5 * std::cos(slow * left) - v / slow * std::sin(slow * left)).epsilon(1e-7));
+  }
+}
+
+TEST_CASE("an event whose function jumps is located at the jump, also over a value of zero") {
+  const auto times = [](const std::string& when, const char* solver = "dop853") {
+    const test::FinishedRun run =
+        run_text("[inputs]\nF = {}\n[discrete]\nn = 0\n[[event]]\nname = \"a\"\nwhen = \"" + when +
+                     "\"\nset = { n = \"n + 1\" }\n[scene.default]\nt = [0, 3]\ninitial = { x_dot = 1 }\nsolver = \"" +
+                     solver + "\"\ninputs = { F = \"if(t < 1, 0, if(t < 2, 1, 3))\" }\n",
+                 1e-9);
+    CHECK(run.simulation.result.outcome == eom::Outcome::done);
+    const std::vector<double> found = times_of(run, "a");
+    CHECK(run.final("n") == 1);
+    return found.empty() ? std::nan("") : found.front();
+  };
+  for (const char* solver : {"dop853", "dopri5", "radau5"}) {
+    CHECK(std::abs(times("if(x > 0.7, 1, -1)", solver) - 0.7) < 1e-11);
+    CHECK(std::abs(times("sign(x - 0.7)", solver) - 0.7) < 1e-11);
+  }
+  CHECK(std::abs(times("F - 1") - 2) < 1e-12);  // -1, then 0 for a second, then 2
+}
+
 TEST_CASE("velocities that a constraint forbids are made consistent by the impulse that M determines") {
   // A pendulum of length 1 in Cartesian coordinates: only the part of the blow along the circle is left.
   const test::FinishedRun run = run_text(

@@ -26,6 +26,7 @@ class Thresholds {
   struct Sizes {
     double speed = 0;
     std::vector<double> gap = {}, terms = {}, force = {};  // per contact; gaps of open ones
+    std::vector<double> flight = {};                       // per contact: its largest gap since it opened
   };
 
   /// `forces` must outlive this object.
@@ -37,7 +38,7 @@ class Thresholds {
   /// Forgets all sizes.
   void start() {
     const std::vector<double> zeros(forces_.set().contacts.size(), 0.0);
-    sizes_ = {0, zeros, zeros, zeros};
+    sizes_ = {0, zeros, zeros, zeros, zeros};
   }
   /// rtol and atol of the run.
   void set_tolerances(double rtol, double atol) { rtol_ = rtol, atol_ = atol; }
@@ -58,7 +59,13 @@ class Thresholds {
         grow(sizes_.terms[j], forces_.terms(at.normal, x));
       }
       for (const Row& row : at.slip) observe_speed(row);
-      if (at.unilateral && !forces_.is_closed(j)) grow(sizes_.gap[j], forces_.value(at.gap));
+      if (!at.unilateral) continue;
+      if (forces_.is_closed(j)) {
+        sizes_.flight[j] = 0;
+      } else {
+        grow(sizes_.gap[j], forces_.value(at.gap));
+        grow(sizes_.flight[j], forces_.value(at.gap));
+      }
     }
   }
   /// The forces are solved for.
@@ -76,6 +83,18 @@ class Thresholds {
     constexpr double roundings = 16, of_gaps = 3e-14;
     const double terms = std::max(sizes_.terms[j], forces_.terms(forces_.contact(j).normal, x));
     return std::max(roundings * std::numeric_limits<double>::epsilon() * terms, of_gaps * sizes_.gap[j]);
+  }
+  /// Whether open contact i meets when contact j does, but for errors of the run: two points of a body that falls flat.
+  /// Both have come from the same height, far beyond these errors.
+  bool meets_with(std::size_t i, std::size_t j, const double* x) const {
+    constexpr double high = 1e3, alike = 0.01;
+    const Row& normal = forces_.contact(i).normal;
+    double known = 0;
+    for (std::size_t k = 0; k < normal.columns.size(); ++k)
+      known += std::abs(forces_.value(normal.slope(k))) * (atol_ + rtol_ * std::abs(x[normal.columns[k]]));
+    const double height = sizes_.flight[i];
+    return forces_.value(forces_.contact(i).gap) <= known && height > high * known &&
+           std::abs(height - sizes_.flight[j]) <= alike * height;
   }
   /// Bounces up to this height are none. Rounding lets a contact fall further than it rose: at most as far as the
   /// locator's rounding of a gap. Above this height each rocking or bounce loses more than it gains by that.

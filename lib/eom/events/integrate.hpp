@@ -77,8 +77,9 @@ class Run {
     if (!begin()) return total_;
     Options piece = options_;
     while (true) {
-      piece.max_steps =
-          options_.max_steps - std::min(options_.max_steps, total_.statistics.steps + total_.statistics.rejected);
+      const std::size_t made = std::min(options_.max_steps, total_.statistics.steps + total_.statistics.rejected);
+      piece.max_steps = options_.max_steps - made;
+      piece.steps_before = options_.steps_before + made;
       const Result part = integrate(
           method_, rhs_, total_.t, total_.x, t1_, piece, [this](const StepView& view) { return observe(view); },
           after_step_);
@@ -91,6 +92,7 @@ class Run {
   /// False: the run ends at its start.
   bool begin() {
     const int code = locator_.start(total_.t, total_.x.data(), g_, t1_ >= total_.t);
+    if (sides_ != nullptr) locator_.set_unknown_sides(*sides_);
     if (code == 0) return true;
     total_.outcome = outcome_of_abi_code(code);
     total_.detail = "an event function returned code " + std::to_string(code) + " at the start";
@@ -146,6 +148,7 @@ class Run {
     total_.statistics += part.statistics;
     if (lost_) return end(Outcome::step_too_small, no_progress);
     if (!cut_) {
+      if (sides_ != nullptr) *sides_ = locator_.sides();
       total_.outcome = part.outcome;
       total_.detail = part.detail;
       total_.t = part.t;
@@ -155,10 +158,13 @@ class Run {
     }
     --total_.statistics.steps;  // the truncated step
     const bool goes_on = handle_breaking_event(piece);
+    if (!goes_on && sides_ != nullptr) *sides_ = waiting_events(*cut_, {});
     cut_.reset();
     return goes_on;
   }
   const Result& total() const { return total_; }
+  /// Sides at the end of an integration that ended at the start of this one; at the end those of this one.
+  void set_sides(std::vector<int>* sides) { sides_ = sides; }
 
  private:
   void cut(const StepView& view, const Crossing& crossing) {
@@ -185,8 +191,9 @@ class Run {
     const std::size_t i = crossing.function;
     const double limit =
         std::max(1e-12 * std::abs(h), 4 * std::numeric_limits<double>::epsilon() * std::abs(crossing.t));
-    double t = crossing.t, before = 0, value_before = 0;
-    bool continues = true;
+    const double located = crossing.t;
+    double t = located, before = 0, value_before = 0;
+    bool continues = true, jumps = false;  // the function jumps there: no correction of the time makes it smaller
     for (int trial = 0; trial < most_corrections; ++trial) {
       one.fixed_step = std::abs(t - t0) / static_cast<double>(parts);
       if (one.fixed_step == 0) return continues;
@@ -196,7 +203,12 @@ class Run {
         if (view.t1 != t) return true;
         final = g_(view.t1, view.x1.data(), values_.data()) != 0 || !std::isfinite(values_[i]) || values_[i] == 0 ||
                 trial + 1 == most_corrections;
-        if (!final) {
+        if (!final && trial > 0 && !jumps)
+          jumps = std::abs(values_[i]) > std::max(0.5 * std::abs(value_before), jump_share * locator_.largest(i));
+        if (jumps) {
+          next = located;
+          final = t == located;
+        } else if (!final) {
           const double slope = trial == 0 ? slope_at_end(view, i) : (values_[i] - value_before) / (t - before);
           const double move = -values_[i] / slope;
           final = !std::isfinite(move) || std::abs(move) <= limit || std::abs(move) > farthest * std::abs(h);
@@ -253,6 +265,7 @@ class Run {
         known ? locator_.simultaneous(crossing.function, values_) : std::vector<std::size_t>{};
     events_without_progress_ =
         progress > std::max(1e-14 * std::abs(crossing.t), 1e-11 * std::abs(h)) ? 0 : events_without_progress_ + 1;
+    const std::vector<int> waiting = waiting_events(crossing, simultaneous);
     const EventAction answer = handler_(EventPoint{total_.t, total_.x, crossing, locator_.functions(), simultaneous});
     if (!continues) return end(Outcome::stopped_by_event, answer == EventAction::stop ? "" : "stopped by the observer");
     if (answer == EventAction::stop) return end(Outcome::stopped_by_event, "");
@@ -261,9 +274,22 @@ class Run {
     piece.initial_step = answer == EventAction::resume ? std::abs(h) : options_.initial_step;
     if (answer == EventAction::resume) return true;
     const int code = locator_.start(total_.t, total_.x.data(), g_, h > 0, {&crossing, 1});
+    locator_.set_unknown_sides(waiting);
     turned_back_.reset();
     if (code == 0 && is_turned_back(crossing.function)) turned_back_ = crossing.function;
     return code == 0 || end(outcome_of_abi_code(code), "an event function returned code " + std::to_string(code));
+  }
+
+  /// The sides of passing events and resets that are not handled with a crossing.
+  std::vector<int> waiting_events(const Crossing& crossing, std::span<const std::size_t> simultaneous) {
+    std::vector<int> sides = locator_.sides();
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      const EventFunction& f = locator_.functions()[i];
+      if (f.watch != Watch::passing && !f.resets) sides[i] = 0;
+    }
+    sides[crossing.function] = 0;
+    for (const std::size_t i : simultaneous) sides[i] = 0;
+    return sides;
   }
 
   /// Whether a function of a reset that was crossed in its direction moves back after the change of the state. Its rate
@@ -302,6 +328,7 @@ class Run {
 
   static constexpr const char* no_progress = "events follow one another without progress in time";
   static constexpr int most_corrections = 6;
+  static constexpr double jump_share = 1e-3;       // of the largest value: smaller ones may be those of a root
   static constexpr double smallest_parts = 1e-13;  // of the time
   static constexpr double most_at_end = 1e-9;      // of the run: later events are not those at its end
   static constexpr int doublings = 40, least_proportional = 6;
@@ -323,6 +350,7 @@ class Run {
   std::vector<double> cut_x_;
   int events_without_progress_ = 0;
   std::optional<std::size_t> turned_back_;  // a function that has to return to the side from which it was crossed
+  std::vector<int>* sides_ = nullptr;       // set_sides()
   bool lost_ = false;                       // it did not: what it does there is below the rounding of its values
 };
 
@@ -331,19 +359,21 @@ class Run {
 /// integrate() with event functions. g(t, x, values) -> int writes as many values as there are `functions`;
 /// handler(EventPoint) -> EventAction. Passing events are reported before the observer receives the step that contains
 /// them. A breaking event is reported after the observer received the step that ends there, also if it ends the run.
+/// `sides` connects integrations that follow one another: a function that is zero between them crosses in the next.
 /// Throws what integrate() throws.
 template <class F, class G, class Handler, class Observer = NoObserver, class AfterStep = NoProjection>
 Result integrate_events(std::string_view method, F&& rhs, double t0, std::span<const double> x0, double t1,
                         const Options& options, G&& g, std::vector<EventFunction> functions, Handler&& handler,
-                        Observer&& observer = {}, AfterStep&& after_step = {}) {
+                        Observer&& observer = {}, AfterStep&& after_step = {}, std::vector<int>* sides = nullptr) {
   detail::check_problem(t0, x0, t1, options);
   MethodChoice choice;  // state of `auto`, which continues after an event
   Options kept = options;
   if (kept.choice == nullptr) kept.choice = &choice;
-  return events::Run<std::remove_reference_t<F>, std::remove_reference_t<G>, std::remove_reference_t<Handler>,
-                     std::remove_reference_t<Observer>, std::remove_reference_t<AfterStep>>(
-             method, rhs, g, std::move(functions), t0, x0, t1, kept, handler, observer, after_step)
-      .run();
+  events::Run<std::remove_reference_t<F>, std::remove_reference_t<G>, std::remove_reference_t<Handler>,
+              std::remove_reference_t<Observer>, std::remove_reference_t<AfterStep>>
+      run(method, rhs, g, std::move(functions), t0, x0, t1, kept, handler, observer, after_step);
+  run.set_sides(sides);
+  return run.run();
 }
 
 }  // namespace eom

@@ -24,35 +24,11 @@
 #include <utility>
 #include <vector>
 
+#include "eom/events/event_function.hpp"
 #include "eom/events/root.hpp"
 #include "eom/run_types.hpp"
 
 namespace eom {
-
-/// Direction of the value as a function of time, independent of the direction of integration.
-enum class Direction { any, up, down };
-
-enum class Watch {
-  off,
-  passing,   // reported, and the integration continues unchanged
-  breaking,  // the step ends at the crossing, and the handler decides how to continue
-};
-
-struct EventFunction {
-  Direction direction = Direction::any;
-  Watch watch = Watch::breaking;
-  bool guard =
-      false;  // for a direction up or down: starting beyond the surface, or leaving it on that side, is a crossing too
-  bool resets = false;  // a handler may turn it back at its crossing: it then has to return to the side it came from
-};
-
-struct Crossing {
-  std::size_t function = 0;
-  double t = 0;
-  bool up = false;                                         // the value rises with t
-  double value = std::numeric_limits<double>::infinity();  // at the crossing, before a handler changed anything;
-                                                           // infinite: not known
-};
 
 class EventLocator {
  public:
@@ -184,6 +160,17 @@ class EventLocator {
     }
     return found;
   }
+
+  /// The sides of all functions.
+  const std::vector<int>& sides() const { return side_; }
+  /// After start(): gives functions that are zero there the sides that they had before. They cross if they go on to the
+  /// other side.
+  void set_unknown_sides(std::span<const int> before) {
+    for (std::size_t i = 0; i < std::min(before.size(), side_.size()); ++i)
+      if (side_[i] == 0 && std::isfinite(values_[i])) side_[i] = before[i];
+  }
+  /// The largest value of a function so far.
+  double largest(std::size_t function) const { return size_[function]; }
 
   /// To be called after the step was accepted in full: determines the sides of functions that had none, or had no value
   /// somewhere in the step.

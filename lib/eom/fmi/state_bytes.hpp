@@ -74,13 +74,14 @@ void transfer(Archive& archive, hybrid::ContactModes::State& state) {
 template <class Archive>
 void transfer(Archive& archive, hybrid::SolvedContacts::State& state) {
   auto& [states, chatter, sizes, hits] = state;
-  auto& [speed, gap, terms, force] = sizes;
+  auto& [speed, gap, terms, force, flight] = sizes;
   transfer(archive, states);
   transfer(archive, chatter);
   transfer(archive, speed);
   transfer(archive, gap);
   transfer(archive, terms);
   transfer(archive, force);
+  transfer(archive, flight);
   transfer(archive, hits);
 }
 template <class Archive>

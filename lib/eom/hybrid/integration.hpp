@@ -114,6 +114,7 @@ class Integration {
   std::optional<MissedForce> missed_narrow_force_;
   double fixed_step_ = 0;  // of the run
   double end_time_ = 0;
+  std::vector<int> event_sides_;  // of events of the model where a segment ends; 0: unknown
   bool stopped_ = false, exchange_due_ = false;
   Reason jump_;                           // a jump with undetermined consequences
   Reason reset_failed_;                   // a reset without a valid result
@@ -170,6 +171,7 @@ inline void Integration::begin(const Options& options) {
   reason_ = {};
   fixed_step_ = options.fixed_step;
   end_time_ = problem_.begin();
+  event_sides_.clear();
   slow_slip_.start(fixed_step_);
   if (context_.solved_contacts)
     context_.solved_contacts->set_tolerances(fixed_step_ > 0 ? slow_slip_rtol : options.rtol,
@@ -189,8 +191,8 @@ inline Result Integration::integrate_segments(Result total, const Options& optio
   const std::vector<Segment> all = segments(problem_);
   for (std::size_t k = 0; k < all.size(); ++k) {
     if (!cross_boundary(k > 0 ? &all[k - 1] : nullptr, all[k].end, total, event)) break;
-    segment.max_steps =
-        options.max_steps - std::min(options.max_steps, total.statistics.steps + total.statistics.rejected);
+    segment.steps_before = std::min(options.max_steps, total.statistics.steps + total.statistics.rejected);
+    segment.max_steps = options.max_steps - segment.steps_before;
     if (options.fixed_step > 0 && problem_.fixed_step > 0)
       segment.fixed_step = all[k].step * (options.fixed_step / problem_.fixed_step);  // their product may overflow
     segment.events_at_end = k + 1 == all.size();
@@ -281,10 +283,13 @@ inline void Integration::integrate_until(double end, Options options, const Obse
                                : slow_slip_.is_active() ? Automatic::name
                                                         : problem_.solver.c_str();
     const Result part = integrate_events(method, f, total.t, total.x, is_crossing_singularity_ ? total.t + length : end,
-                                         now, g, context_.events.watched(), at, observe, after);
+                                         now, g, context_.events.watched(), at, observe, after, &event_sides_);
+    event_sides_.resize(problem_.events.size());  // sides of kinks and contacts follow from their modes
     if (!continue_after_event(part, begin, end, event, total)) return;
     options.initial_step = std::abs(last_step_);
-    options.max_steps -= std::min(options.max_steps, part.statistics.steps + part.statistics.rejected);
+    const std::size_t made = std::min(options.max_steps, part.statistics.steps + part.statistics.rejected);
+    options.max_steps -= made;
+    options.steps_before += made;
   }
 }
 

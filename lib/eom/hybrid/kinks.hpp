@@ -34,16 +34,17 @@ class Kinks {
     return true;
   }
 
-  /// Freezes each kink on the side of the state. On the surface itself the branch follows the state. anew: at the start
-  /// of a segment, or after a change of mode. surfaces: their values.
+  /// Freezes each kink on the side of the state. On the surface the branch follows the state. anew: at the start of a
+  /// segment, or after a change of mode. surfaces: their values.
   void freeze(const double* surfaces, bool anew) {
     for (std::size_t k = 0; k < size_.size(); ++k) {
       if (model_.is_sliding(k)) continue;
       const double g = surfaces[k];
       if (std::isfinite(g)) size_[k] = std::max(size_[k], std::abs(g));
       // A value that is small compared with earlier ones may be rounding, and its side may differ from that found by
-      // the event locator.
-      if (model_.mode().kink(k) != 0 || !(std::abs(g) > (anew ? 0 : beyond_rounding * size_[k]))) continue;
+      // the event locator: a reset at the surface is located on one side, and the state goes on to the other.
+      const double least = (anew ? surface_rounding : beyond_rounding) * size_[k];
+      if (model_.mode().kink(k) != 0 || !(std::abs(g) > least)) continue;
       model_.set_kink(k, g > 0 ? 1 : -1);
     }
   }

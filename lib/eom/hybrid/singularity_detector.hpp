@@ -32,13 +32,15 @@ class SingularityDetector {
   /// the distance.
   void mark_passed(double length);
   void mark_refused() { nearest_ = 0.5 * distance_; }
+  /// Whether a step across the configuration ahead has been refused.
+  bool was_refused() const { return nearest_ > 0; }
 
   /// Whether rank is lost in the step across. `at`: the state at its target.
   bool is_rank_lost(double t, const double* at) { return rank_measure(t, at) < 0.2 * measure_; }
   /// The row of A that depends on others at the loss of rank, as last measured.
   std::size_t row() const { return row_; }
   /// Relative rounding of a step across from its starting point.
-  double rounding() const { return 8 * std::numeric_limits<double>::epsilon() / (measure_ * measure_); }
+  double rounding() const { return 32 * std::numeric_limits<double>::epsilon() / (measure_ * measure_); }
 
   static constexpr const char* solver = "dop853";
   /// The position of the configuration within the step across it: midway between the stages of DOP853 at 1/3 and 3/5.
@@ -57,11 +59,16 @@ class SingularityDetector {
   /// The last pivot of a pivoted QR of A^T relative to the first, with rows of A scaled by their longest lengths so
   /// far. 0 if a row depends on others.
   double rank_measure(double t, const double* x);
+  /// The same at another state with the order of rows of the last call, so that the measure is smooth.
+  double rank_measure_in_order(double t, const double* x);
+  /// False: A has no value, or more rows than columns.
+  bool evaluate_rows(double t, const double* x);
 
   std::size_t n_;
   Rows evaluate_;
   Eigen::MatrixXd A_, transposed_;
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr_;
+  Eigen::HouseholderQR<Eigen::MatrixXd> ordered_;
   Eigen::VectorXd longest_row_, ahead_;
   double longest_ = 0;  // step since the start or the last crossing
   double measure_ = 0, distance_ = 0;
@@ -76,18 +83,29 @@ inline SingularityDetector::SingularityDetector(std::size_t n, std::size_t rows,
       A_(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(n)),
       transposed_(A_.cols(), A_.rows()),
       qr_(A_.cols(), A_.rows()),
+      ordered_(A_.cols(), A_.rows()),
       longest_row_(Eigen::VectorXd::Zero(A_.rows())) {}
 
-inline double SingularityDetector::rank_measure(double t, const double* x) {
-  if (A_.rows() == 0 || A_.rows() > A_.cols() || evaluate_(t, x, A_.data()) != 0 || !A_.allFinite())
-    return std::numeric_limits<double>::quiet_NaN();
+inline bool SingularityDetector::evaluate_rows(double t, const double* x) {
+  if (A_.rows() == 0 || A_.rows() > A_.cols() || evaluate_(t, x, A_.data()) != 0 || !A_.allFinite()) return false;
   for (Eigen::Index i = 0; i < A_.rows(); ++i) {
     longest_row_(i) = std::max(longest_row_(i), A_.row(i).norm());  // a row may vanish, for example for aligned bars
     transposed_.col(i) = A_.row(i).transpose() / (longest_row_(i) > 0 ? longest_row_(i) : 1);
   }
+  return true;
+}
+
+inline double SingularityDetector::rank_measure(double t, const double* x) {
+  if (!evaluate_rows(t, x)) return std::numeric_limits<double>::quiet_NaN();
   qr_.compute(transposed_);
   row_ = static_cast<std::size_t>(qr_.colsPermutation().indices()(A_.rows() - 1));
   return std::abs(qr_.matrixQR()(A_.rows() - 1, A_.rows() - 1)) / std::max(qr_.maxPivot(), 1e-300);
+}
+
+inline double SingularityDetector::rank_measure_in_order(double t, const double* x) {
+  if (!evaluate_rows(t, x)) return std::numeric_limits<double>::quiet_NaN();
+  ordered_.compute(transposed_ * qr_.colsPermutation());
+  return std::abs(ordered_.matrixQR()(A_.rows() - 1, A_.rows() - 1)) / std::max(qr_.maxPivot(), 1e-300);
 }
 
 inline double SingularityDetector::due_length(const StepView& step) {
@@ -101,7 +119,7 @@ inline double SingularityDetector::due_length(const StepView& step) {
   if (!(measure_ < near && measure_ > redundant)) return 0;
   ahead_ = Eigen::Map<const Eigen::VectorXd>(step.x1.data(), static_cast<Eigen::Index>(step.x1.size()));
   for (std::size_t i = 0; i < n_; ++i) ahead_[static_cast<Eigen::Index>(i)] += look_ahead * h * step.x1[n_ + i];
-  const double decrease = measure_ - rank_measure(step.t1 + look_ahead * h, ahead_.data());
+  const double decrease = measure_ - rank_measure_in_order(step.t1 + look_ahead * h, ahead_.data());
   distance_ = decrease > 0 ? look_ahead * size * measure_ / decrease : std::numeric_limits<double>::infinity();
   if (!std::isfinite(distance_) || (nearest_ > 0 && distance_ > nearest_)) return 0;
   return distance_ / crossing_fraction;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -55,7 +56,9 @@ class SingularityStep {
     context_.projection.restore_corrections(largest);
     evaluations +=
         whole.statistics.rhs_evaluations + half.statistics.rhs_evaluations + other.statistics.rhs_evaluations;
-    return whole.outcome == Outcome::done && other.outcome == Outcome::done && agree(whole.x, other.x, options);
+    if (!detector_.was_refused()) least_difference_ = std::numeric_limits<double>::infinity();
+    if (whole.outcome != Outcome::done || other.outcome != Outcome::done) return false;
+    return agree(whole.x, other.x, options) || is_best(whole.x, other.x);
   }
 
   /// Reports an event if rank was lost in an accepted step across the configuration.
@@ -81,6 +84,19 @@ class SingularityStep {
     return sum <= static_cast<double>(moved);
   }
 
+  /// Whether a step from a shorter distance is no more accurate than the one before: rounding limits both.
+  bool is_best(const std::vector<double>& one, const std::vector<double>& other) {
+    constexpr double largest_error = 1e-6;
+    double largest = 0, difference = 0;
+    for (std::size_t i = 0; i < context_.problem.code->layout().first_order_begin(); ++i) {
+      largest = std::max(largest, std::abs(one[i]));
+      difference = std::max(difference, std::abs(one[i] - other[i]));
+    }
+    const bool best = difference >= least_difference_ && difference <= largest_error * largest;
+    least_difference_ = std::min(least_difference_, difference);
+    return best;
+  }
+
   std::string name_of_row(std::size_t row) const {
     const std::size_t constraint = context_.rows.constraint_of(row);
     const std::vector<std::string>& names = context_.problem.constraint_names;
@@ -90,6 +106,7 @@ class SingularityStep {
   RunContext& context_;
   std::vector<double> psi_, b_;
   SingularityDetector detector_;
+  double least_difference_ = std::numeric_limits<double>::infinity();  // of the refused steps across a configuration
 };
 
 }  // namespace eom::hybrid

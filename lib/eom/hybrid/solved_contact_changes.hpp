@@ -7,15 +7,16 @@
 
 namespace eom::hybrid {
 
-inline void SolvedContacts::add_touching(double t, std::span<double> x, std::vector<std::size_t>& touching) {
+inline void SolvedContacts::add_touching(double t, std::span<double> x, std::size_t j,
+                                         std::vector<std::size_t>& touching) {
   if (forces_.evaluate_rows(t, x.data(), model_.inputs_without_contacts(t)) != 0) return;
   for (std::size_t i = 0; i < size(); ++i) {
     const contacts::Description& at = forces_.contact(i);
     if (!at.unilateral || forces_.is_closed(i) || std::find(touching.begin(), touching.end(), i) != touching.end())
       continue;
-    if (forces_.value(at.gap) <= thresholds_.gap_rounding(i, x.data()) &&
-        forces_.rate(at.normal) < thresholds_.negligible_speed())
-      touching.push_back(i);
+    const double rate = forces_.rate(at.normal), negligible = thresholds_.negligible_speed();
+    const bool meets = forces_.value(at.gap) <= thresholds_.gap_rounding(i, x.data()) && rate < negligible;
+    if (meets || (rate < -negligible && thresholds_.meets_with(i, j, x.data()))) touching.push_back(i);
   }
   std::sort(touching.begin(), touching.end());
 }

@@ -187,7 +187,7 @@ class SolvedContacts {
     bool rest = false;
     const bool meets = which == 0 && !forces_.is_closed(j);
     if (meets) {
-      add_touching(t, x, touching);
+      add_touching(t, x, j, touching);
       set_least_slip(x.data());
       if (chatter_.add_transition(t)) end_bounces(j, touching, plastic);
       rest = stop_low_bounces(t, x, touching, plastic);
@@ -282,8 +282,8 @@ class SolvedContacts {
     return forces_.states()[j].starts ? 1 : forces_.slip_speed(j) - forces_.least_slip();
   }
 
-  /// Adds open contacts that meet at the same time.
-  void add_touching(double t, std::span<double> x, std::vector<std::size_t>& touching);
+  /// Adds open contacts that meet when contact j does.
+  void add_touching(double t, std::span<double> x, std::size_t j, std::vector<std::size_t>& touching);
   /// An infinite sequence of ever smaller bounces ends with lasting contact of all contacts that took turns.
   void end_bounces(std::size_t j, std::vector<std::size_t>& touching, std::vector<bool>& plastic);
   /// A bounce lower than the rounding of the gap is none. If all motion of contacts that meet is lower, they come to
