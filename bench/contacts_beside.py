@@ -3,17 +3,21 @@
 
 usage: bench/contacts_beside.py EOMGEN
 Needs the Python package of Siconos (Debian: python3-siconos), and ends with a message where it is not installed.
-Models: `ball_chain` after 24 impacts, `woodpecker` after the first cycle of sticking, sliding and the beak's impact.
-Siconos has their equations from this file: Moreau's time stepping (theta 1/2) with several steps, and for the balls
-the event-driven scheme (LSODAR). Errors are the largest of coordinates at the end, in the unit of the coordinate.
-Reference of the balls: parabolas between impacts in 40 digits. Of the woodpecker: eomgen at rtol 1e-13, so that errors
-below 1e-12 are not significant. Run times are medians of three, of one above 2 s, without the set-up of the model.
+Models: `ball_chain` after 24 impacts, `woodpecker` after the first cycle of sticking, sliding and the beak's impact,
+`slider_crank` after four impacts of two corners each, before its first infinite sequence of bounces. Siconos has the
+equations from this file, those of the slider-crank from contacts_slider_crank.c (compiled by `cc`: relations that depend
+on the coordinates nonlinearly work as compiled functions only). It runs Moreau's time stepping (theta 1/2) with several
+steps, and for the balls the event-driven scheme (LSODAR). Errors are the largest of coordinates at the end, in the unit
+of the coordinate. Reference of the balls: parabolas between impacts in 40 digits. References of the others: integration
+from event to event in 50 digits (contacts_reference.py, half a minute). Run times are medians of three, of one above
+2 s, without the set-up of the model.
 """
 import json
 import os
 import statistics
 import subprocess
 import sys
+import tempfile
 import time
 from decimal import Decimal, getcontext
 
@@ -22,10 +26,16 @@ os.environ["OPENBLAS_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = "1"  # thre
 try:
     import numpy as np
     import siconos.kernel as sk
+    import siconos.numerics as sn
 except ImportError:
     sys.exit("bench/contacts_beside.py: skipped, the Python package of Siconos is not installed (Debian: python3-siconos)")
+try:
+    import contacts_reference
+except ImportError:
+    sys.exit("bench/contacts_beside.py: skipped, the Python package mpmath is not installed (Debian: python3-mpmath)")
 
-BALLS_END, WOODPECKER_END = 0.48, 0.14
+BALLS_END, WOODPECKER_END, SLIDER_END = 0.48, 0.14, 0.0087
+SLIDER_CRANK = []  # path of the compiled equations, without its ending
 
 
 def fall_of_balls(end):
@@ -104,6 +114,34 @@ def woodpecker(h, events):
     return system, sk.TimeStepping(model, sk.TimeDiscretisation(0, h), sk.MoreauJeanOSI(0.5), friction), kept
 
 
+def slider_crank(h, events):
+    """Coordinates theta1, theta2, theta3 of models/slider_crank.toml. NSGS does not converge where two corners hit."""
+    library = SLIDER_CRANK[0]
+    system = sk.LagrangianDS(np.zeros(3), np.array([150.0, -75.0, 0.0]))
+    system.setComputeMassFunction(library, "mass")
+    system.setComputeFGyrFunction(library, "forces")
+    system.setComputeJacobianFGyrqFunction(library, "forces_q")
+    system.setComputeJacobianFGyrqDotFunction(library, "forces_v")
+    model = sk.NonSmoothDynamicalSystem(0, SLIDER_END)
+    model.insertDynamicalSystem(system)
+    kept = [system, model]
+    for corner in ("top_rear", "top_front", "bottom_rear", "bottom_front"):
+        relation = sk.LagrangianScleronomousR(f"{library}:gap_{corner}", f"{library}:rows_{corner}")
+        contact = sk.Interaction(sk.NewtonImpactFrictionNSL(0.4, 0, 0.01, 2), relation)
+        model.link(contact, system)
+        kept += [relation, contact]
+    friction = sk.FrictionContact(2, sn.SICONOS_FRICTION_2D_CPG)
+    friction.numericsSolverOptions().dparam[0] = 1e-12
+    kept.append(friction)
+    return system, sk.TimeStepping(model, sk.TimeDiscretisation(0, h), sk.MoreauJeanOSI(0.5), friction), kept
+
+
+def compile_slider_crank(folder):
+    SLIDER_CRANK.append(os.path.join(folder, "slider_crank_plugin"))
+    source = os.path.join(os.path.dirname(os.path.abspath(__file__)), "contacts_slider_crank.c")
+    subprocess.run(["cc", "-O2", "-shared", "-fPIC", "-o", SLIDER_CRANK[0] + ".so", source, "-lm"], check=True)
+
+
 def siconos(build, h, events):
     seconds = []
     for _ in range(3):
@@ -138,13 +176,20 @@ def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     program = sys.argv[1]
-    woodpecker_names = ["y", "phi_M", "phi_S"]
-    references = {"ball_chain": np.array(fall_of_balls(BALLS_END)),
-                  "woodpecker": eomgen(program, "woodpecker", woodpecker_names, WOODPECKER_END, 1e-13)[0]}
+    references = {"ball_chain": fall_of_balls(BALLS_END),
+                  "woodpecker": contacts_reference.woodpecker(str(WOODPECKER_END)).q,
+                  "slider_crank": contacts_reference.slider_crank(str(SLIDER_END)).q}
+    with tempfile.TemporaryDirectory() as folder:
+        compile_slider_crank(folder)
+        table(program, {model: np.array([float(x) for x in q]) for model, q in references.items()})
+
+
+def table(program, references):
     print("| model | program | method | error | ms |")
     print("|---|---|---|---:|---:|")
     for model, names, end, build in (("ball_chain", ["z1", "z2", "z3"], BALLS_END, balls),
-                                     ("woodpecker", woodpecker_names, WOODPECKER_END, woodpecker)):
+                                     ("woodpecker", ["y", "phi_M", "phi_S"], WOODPECKER_END, woodpecker),
+                                     ("slider_crank", ["theta1", "theta2", "theta3"], SLIDER_END, slider_crank)):
         rows = [("eomgen", f"rtol {rtol:g}", *eomgen(program, model, names, end, rtol)) for rtol in (1e-6, 1e-9, 1e-12)]
         rows += [("Siconos", f"Moreau, step {h:g} s", *siconos(build, h, False)) for h in (1e-4, 1e-5, 1e-6)]
         if build is balls:
