@@ -7,18 +7,14 @@
 #include <vector>
 
 #include "model/units.hpp"
+#include "run/quantities.hpp"
 #include "symbolic/decimal.hpp"
 
 namespace eomgen::cli {
 
+using run::Quantity;
 using symbolic::decimal_text;
 using symbolic::parse_decimal;
-
-/// A value in SI units, and the unit it was written in: "30 deg", "30deg", "0.5".
-struct Quantity {
-  symbolic::Rational value;
-  std::optional<model::MeasuredUnit> unit;
-};
 
 /// Parses a decimal number and a unit after it. `shown` stands in messages. Throws Error{stage "cli"}.
 Quantity parse_quantity(const std::string& text, const std::string& shown);

@@ -47,7 +47,7 @@ void require_function(const CompiledModel& model, const std::string& method, con
   if (model.has(function)) return;
   throw Error("step", {},
               "the method '" + method + "' needs the function '" + std::string(function) + "', which was not compiled",
-              "name it in CompileOptions::functions, or choose rk4");
+              "name it in `functions` when the model is compiled, or choose rk4");
 }
 
 /// Refuses models whose momenta do not change by their rates alone.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "eomgen/model.hpp"
 
+#include <cln/real.h>
 #include <fmt/format.h>
 
 #include <cmath>
@@ -8,6 +9,7 @@
 #include "analysis/shortest_decimal.hpp"
 #include "eomgen/prepared_runs.hpp"
 #include "model/model.hpp"
+#include "run/quantities.hpp"
 
 namespace eomgen {
 namespace {
@@ -87,6 +89,21 @@ std::vector<std::string> Model::warnings() const {
 }
 
 std::vector<Warning> Model::reader_warnings() const { return read_->warnings; }
+
+double Model::number_of(const std::string& name, const std::string& text, const CallControl& control) const {
+  const std::scoped_lock lock(library_mutex());
+  const run::Quantity quantity = run::parse_quantity("library", text, text);
+  const run::StatedUnit stated = run::stated_unit(*read_, name);
+  if (quantity.unit) run::require_dimension("library", name, *quantity.unit, stated);
+  if (!quantity.unit && stated.unit && control.on_warning) {
+    const std::string si = run::si_unit(stated.unit->dimension);
+    control.on_warning(format_warning(
+        {SourceLocation{},
+         fmt::format("the model states {} in {}, and {} without a unit is in {}", name, stated.unit->text, text, si),
+         fmt::format("write {0} {1}, or {0} {2} if this is meant", text, stated.unit->text, si)}));
+  }
+  return cln::double_approx(quantity.value);
+}
 
 std::string Model::text() const { return fmt::format("{}", fmt::join(read_->lines, "\n")); }
 

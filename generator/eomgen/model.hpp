@@ -56,6 +56,10 @@ class Model {
   std::vector<std::string> warnings() const;
   /// The same as values.
   std::vector<Warning> reader_warnings() const;
+  /// The number in SI units of a text such as "50 cm" or "30deg", for a parameter, an input, a coordinate, a rate or a
+  /// state of this name. Warns if it has no unit and the model states the parameter in another unit than SI. Throws
+  /// Error if the text is no number with a unit, or if the unit has another dimension.
+  double number_of(const std::string& name, const std::string& text, const CallControl& control = {}) const;
   std::string text() const;    // of the model file
   std::string folder() const;  // of files that the model names; empty: from_text() without one
 

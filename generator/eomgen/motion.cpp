@@ -101,8 +101,7 @@ Motion Model::run(const RunOptions& options, const CallControl& control) const {
       run = prepared.bind(prepared.plan->scene, options.error_estimate);
       take_columns(prepared, motion);
       const run::Scene& scene = prepared.plan->scene;
-      require_rows(scene.t0, scene.t1, pipeline::row_interval(scene), motion.columns.size(), !options.row,
-                   "RunOptions::every");
+      require_rows(scene.t0, scene.t1, pipeline::row_interval(scene), motion.columns.size(), !options.row, "every");
     }
     const std::vector<std::string>& names = run->code().output_names;
     std::vector<std::size_t> index;
@@ -139,7 +138,7 @@ InverseDynamics Model::inverse_dynamics(const InverseOptions& options, const Cal
     request.seed = options.seed;
     request.interrupt = call.stopped();
     request.begin = [](const run::Scene& scene, const std::vector<std::string>& columns) {
-      require_rows(scene.t0, scene.t1, pipeline::row_interval(scene), columns.size(), true, "InverseOptions::every");
+      require_rows(scene.t0, scene.t1, pipeline::row_interval(scene), columns.size(), true, "every");
     };
     request.row = [&](double t, std::span<const double> values) {
       result.times.push_back(t);

@@ -20,10 +20,12 @@ namespace {
 
 constexpr double closed_gap = 1e-8;  // gaps up to this size are closed
 
-void require_length(std::size_t expected, std::size_t given, const char* what, const char* names) {
-  if (given == expected) return;
-  throw Error("simulation", {}, fmt::format("{} {} are given, and there are {}", given, what, expected),
-              fmt::format("give one number for each of {}", names));
+void require_length(const std::vector<Quantity>& expected, std::size_t given, const char* what) {
+  if (given == expected.size()) return;
+  std::string names;
+  for (const Quantity& quantity : expected) names += (names.empty() ? "" : ", ") + quantity.name;
+  throw Error("simulation", {}, fmt::format("{} {} are given, and there are {}", given, what, expected.size()),
+              expected.empty() ? "give none" : fmt::format("give one number for each of them: {}", names));
 }
 
 void require_finite(std::span<const double> values, const char* what) {
@@ -112,8 +114,7 @@ Advance Simulation::Data::advance(double t_end, bool one_step, const CallControl
   if (std::isnan(t_end) || t_end < run.t())
     throw Error("simulation", {}, fmt::format("an advance to t = {} would end before t = {}", t_end, run.t()),
                 "give a later time, or restore an earlier state");
-  if (every > 0 && !one_step)
-    require_rows(run.t(), t_end, every, model->outputs.size(), !row, "SimulationOptions::every");
+  if (every > 0 && !one_step) require_rows(run.t(), t_end, every, model->outputs.size(), !row, "every");
   return with_listener(control, [&](CallListener& call) {
     Advance result;
     now = &result;
@@ -187,20 +188,20 @@ void Simulation::set_input(const std::string& name, std::function<double(double 
 }
 
 void Simulation::set_inputs(std::span<const double> values) {
-  require_length(data_->model->inputs.size(), values.size(), "inputs", "CompiledModel::inputs()");
+  require_length(data_->model->inputs, values.size(), "inputs");
   require_finite(values, "the value of an input");
   for (std::size_t i = 0; i < values.size(); ++i) data_->run.set_input(i, held(t(), values[i]));
 }
 
 void Simulation::set_parameters(std::span<const double> values) {
-  require_length(data_->parameters.size(), values.size(), "parameters", "CompiledModel::parameters()");
+  require_length(data_->model->parameters, values.size(), "parameters");
   require_finite(values, "a parameter");
   data_->run.set_parameters(values);
   data_->parameters.assign(values.begin(), values.end());
 }
 
 void Simulation::set_state(double t, std::span<const double> x) {
-  require_length(data_->model->states.size(), x.size(), "states", "CompiledModel::states()");
+  require_length(data_->model->states, x.size(), "states");
   require_finite(x, "a state");
   require_finite({&t, 1}, "the time of a state");
   const std::vector<double> gaps = data_->run.gaps(t, x);

@@ -29,8 +29,7 @@ Certificate Model::verify(const VerifyOptions& options, const CallControl& contr
 
 Sources Model::emit(const EmitOptions& options, const CallControl& control) const {
   if (options.real_type != "double" && options.real_type != "float")
-    throw Error("library", {}, "code computes in `double` or in `float`",
-                "leave EmitOptions::real_type as it is, or set one");
+    throw Error("library", {}, "code computes in `double` or in `float`", "choose one of them");
   return with_lock(control, [&](CallListener&) {
     pipeline::EmissionRequest request{options.target,
                                       approach_choice(options.approach),

@@ -16,13 +16,11 @@ namespace {
 
 constexpr double most_bytes = 4e9;  // of rows in memory
 
-/// Refuses values of the options of one struct.
+/// Refuses values of options. Their names are the same in every language.
 struct OptionValidator {
-  const char* options;  // "RunOptions"
-
   void require(bool holds, const char* name, double value, const char* what) const {
     if (holds) return;
-    throw Error("library", {}, fmt::format("{}::{} is {}", options, name, value), fmt::format("give {}", what));
+    throw Error("library", {}, fmt::format("the option {} is {}", name, value), fmt::format("give {}", what));
   }
   void finite(const char* name, const std::optional<double>& value) const {
     if (value) require(std::isfinite(*value), name, *value, "a finite number");
@@ -35,7 +33,7 @@ struct OptionValidator {
   }
   void count(const char* name, std::size_t value, const limits::CountRange& range) const {
     if (value >= range.least && value <= range.most) return;
-    throw Error("library", {}, fmt::format("{}::{} is {}", options, name, value),
+    throw Error("library", {}, fmt::format("the option {} is {}", name, value),
                 fmt::format("give a whole number from {} to {}", range.least, range.most));
   }
   /// 0 stands for the default.
@@ -53,7 +51,7 @@ struct OptionValidator {
 }  // namespace
 
 void require_valid(const RunOptions& o) {
-  const OptionValidator is{"RunOptions"};
+  const OptionValidator is{};
   is.finite("t_end", o.t_end);
   is.tolerances(o);
   is.positive("step", o.step);
@@ -64,14 +62,14 @@ void require_valid(const RunOptions& o) {
 }
 
 void require_valid(const InverseOptions& o) {
-  const OptionValidator is{"InverseOptions"};
+  const OptionValidator is{};
   is.finite("t_end", o.t_end);
   is.tolerances(o);
   is.positive("every", o.every);
 }
 
 void require_valid(const SimulationOptions& o) {
-  const OptionValidator is{"SimulationOptions"};
+  const OptionValidator is{};
   is.tolerances(o);
   is.positive("step", o.step);
   is.positive("max_step", o.max_step);
@@ -79,27 +77,25 @@ void require_valid(const SimulationOptions& o) {
   is.optional_count("max_steps", o.max_steps, limits::run_steps);
 }
 
-void require_valid(const LineariseOptions& o) { OptionValidator{"LineariseOptions"}.finite("time", o.time); }
+void require_valid(const LineariseOptions& o) { OptionValidator{}.finite("time", o.time); }
 
-void require_valid(const SteadyOptions& o) {
-  OptionValidator{"SteadyOptions"}.count("starts", o.starts, limits::search_starts);
-}
+void require_valid(const SteadyOptions& o) { OptionValidator{}.count("starts", o.starts, limits::search_starts); }
 
 void require_valid(const BenchmarkOptions& o) {
-  const OptionValidator is{"BenchmarkOptions"};
+  const OptionValidator is{};
   is.finite("t_end", o.t_end);
   is.positive("max_seconds", o.max_seconds);
 }
 
 void require_valid(const StressOptions& o) {
-  const OptionValidator is{"StressOptions"};
+  const OptionValidator is{};
   is.finite("t_end", o.t_end);
   is.positive("max_seconds", o.max_seconds);
   is.count("max_steps", o.max_steps, limits::stress_steps);
 }
 
 void require_valid(const VerifyOptions& o) {
-  const OptionValidator is{"VerifyOptions"};
+  const OptionValidator is{};
   const limits::CountRange range = limits::verification_digits;
   is.require(
       o.digits >= 0 && static_cast<unsigned>(o.digits) >= range.least && static_cast<unsigned>(o.digits) <= range.most,

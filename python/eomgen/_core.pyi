@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The extension module: results are dictionaries and arrays."""
+"""The extension module: results are dictionaries and arrays. Arguments that `arguments.checked` converted are Any."""
 
 from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
@@ -17,7 +17,7 @@ version: str
 def solvers() -> List[str]: ...
 def targets() -> List[str]: ...
 def import_robot(
-    path: str,
+    path: Any,
     floating: bool,
     attitude: str,
     friction: str,
@@ -34,9 +34,9 @@ class Callbacks:
 
 class Model:
     @staticmethod
-    def from_file(path: str) -> Model: ...
+    def from_file(path: Any) -> Model: ...
     @staticmethod
-    def from_text(text: str, name: str, folder: str) -> Model: ...
+    def from_text(text: Any, name: str, folder: Any) -> Model: ...
     def id(self) -> str: ...
     def title(self) -> str: ...
     def text(self) -> str: ...
@@ -45,9 +45,10 @@ class Model:
     def parameters(self) -> List[str]: ...
     def inputs(self) -> List[str]: ...
     def scenes(self) -> List[str]: ...
+    def number_of(self, name: str, text: str, warning: Callable[[str], None]) -> float: ...
     def warnings(self) -> List[Dict[str, Any]]: ...
     def check(self, callbacks: Callbacks) -> Dict[str, Any]: ...
-    def derive(self, approach: str, show: Optional[List[str]], callbacks: Callbacks) -> Dict[str, Any]: ...
+    def derive(self, approach: str, show: Any, callbacks: Callbacks) -> Dict[str, Any]: ...
     def derivation(self, approach: str, callbacks: Callbacks) -> Dict[str, Any]: ...
     def document(self, seed: int, callbacks: Callbacks) -> str: ...
     def verify(self, digits: int, points: int, compile: bool, seed: int, callbacks: Callbacks) -> Dict[str, Any]: ...
@@ -70,7 +71,7 @@ class Model:
     def inverse(
         self,
         scene: str,
-        parameters: Dict[str, float],
+        parameters: Any,
         t_end: Optional[float],
         every: Optional[float],
         rtol: Optional[float],
@@ -82,17 +83,17 @@ class Model:
     def linearize(
         self,
         scene: str,
-        parameters: Dict[str, float],
+        parameters: Any,
         time: Optional[float],
         seed: int,
-        outputs: List[str],
+        outputs: Any,
         callbacks: Callbacks,
     ) -> Dict[str, Any]: ...
     def equilibria(
         self,
         scene: str,
-        parameters: Dict[str, float],
-        hold: Dict[str, float],
+        parameters: Any,
+        hold: Any,
         starts: int,
         seed: int,
         callbacks: Callbacks,
@@ -100,7 +101,7 @@ class Model:
     def bench(
         self,
         scene: str,
-        parameters: Dict[str, float],
+        parameters: Any,
         t_end: Optional[float],
         solvers: List[str],
         max_seconds: float,
@@ -111,7 +112,7 @@ class Model:
     def stress(
         self,
         scene: str,
-        parameters: Dict[str, float],
+        parameters: Any,
         t_end: Optional[float],
         solvers: List[str],
         max_seconds: float,
@@ -277,7 +278,7 @@ class CompiledModel:
     def _certificate(self) -> str: ...
     def _tier(self) -> str: ...
     def _values(self) -> Tuple[float, float, Array, Array]: ...
-    def _scene_values(self, replaced: Mapping[str, float]) -> Tuple[float, float, Array, Array]: ...
+    def _scene_values(self, replaced: Any) -> Tuple[float, float, Array, Array]: ...
     def _input_values(self, t: float) -> Array: ...
     def _taylor(self, t: float, x: ArrayLike, order: int, inputs: Any, parameters: Any, mode: Any) -> Array: ...
     def _step(

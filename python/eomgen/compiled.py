@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from . import _core, control
+from .arguments import checked, integer, number, value_of, values_by_name
 from .control import DiscreteStep, StateSpace, TransferFunction, Trim
 from .records import Quantity
 
@@ -173,34 +174,40 @@ class CompiledModel(_core.CompiledModel):
         """The parameters of the scene: (P,)."""
         return self._values()[2]
 
-    def values(self, parameters: Optional[Mapping[str, float]] = None) -> SceneValues:
+    @checked
+    def values(self, parameters: 'Optional[Mapping[str, "float | str"]]' = None) -> SceneValues:
         """The numbers of the scene with other parameters and initial values.
 
-        Parameters that depend on others follow, and the start satisfies the constraints.
+        ``parameters``: as of ``Model.run``. Parameters that depend on others follow, and the start satisfies the
+        constraints.
         """
-        return SceneValues(*(self._scene_values(dict(parameters)) if parameters else self._values()))
+        return SceneValues(*(self._scene_values(parameters) if parameters else self._values()))
 
     def input_values(self, t: float) -> "NDArray[Any]":
         """The inputs of the scene at t in s: (U,)."""
-        return self._input_values(t)
+        return self._input_values(number("t", t))
 
-    def state(self, values: Optional[Mapping[str, float]] = None, **more: float) -> "NDArray[Any]":
-        """A state from names: (N,). The others are 0. Constraints are not solved; ``values()`` does that."""
+    def state(self, values: 'Optional[Mapping[str, "float | str"]]' = None, **more: "float | str") -> "NDArray[Any]":
+        """A state from names: (N,). The others are 0. Constraints are not solved; ``values()`` does that.
+
+        A value is a number in SI units, or text with a unit, "30 deg".
+        """
         import numpy as np
 
         names = self.state_names
         x = np.zeros(len(names))
-        for name, value in {**(values or {}), **more}.items():
+        given: Dict[str, Any] = {**values_by_name(self._model, "values", values or {}), **more}
+        for name, value in given.items():
             if name not in names:
                 raise KeyError(f"there is no state '{name}'; there are: {', '.join(names)}")
-            x[names.index(name)] = value
+            x[names.index(name)] = value_of(self._model, "values", name, value)
         return x
 
     def taylor(
         self, t: float, x: "NDArray[Any]", order: int, inputs: Any = None, parameters: Any = None, mode: Any = None
     ) -> "NDArray[Any]":
         """Coefficients of the power series of the motion at constant inputs: (order + 1, N)."""
-        return self._taylor(t, x, order, inputs, parameters, mode)
+        return self._taylor(number("t", t), x, integer("order", order), inputs, parameters, mode)
 
     @staticmethod
     def step_methods() -> List[str]:
@@ -247,6 +254,7 @@ class CompiledModel(_core.CompiledModel):
             )
         return frames
 
+    @checked
     def linearize(
         self,
         x: Any = None,
@@ -265,6 +273,7 @@ class CompiledModel(_core.CompiledModel):
         """
         return control.linearize(self, x, inputs, outputs, t, mode)
 
+    @checked
     def transfer_function(
         self,
         x: Any = None,
@@ -276,6 +285,7 @@ class CompiledModel(_core.CompiledModel):
         """The transfer functions from the inputs to outputs about a state: ``linearize(..).transfer_function()``."""
         return control.linearize(self, x, inputs, outputs, t, None).transfer_function()
 
+    @checked
     def trim(
         self,
         x: Any = None,
@@ -293,6 +303,7 @@ class CompiledModel(_core.CompiledModel):
         """
         return control.trim(self, x, inputs, guess, t, tolerance)
 
+    @checked
     def discretize(
         self, period: float, x: Any = None, inputs: Any = None, *, t: Optional[float] = None, rtol: float = 1e-10
     ) -> DiscreteStep:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Iterator, List, Mapping, NamedTuple, Optional, Sequence
 
+from .arguments import array, checked, value_of
 from .errors import Error, input_error
 from .records import Record
 
@@ -77,12 +78,13 @@ class StateSpace(Record):
         """G(i omega), or G(exp(i omega period)): (outputs, inputs, K) complex numbers for K frequencies in rad/s."""
         import numpy as np
 
-        w = np.atleast_1d(np.asarray(omega, dtype=float))
+        w = np.atleast_1d(array("omega", omega))
         points = np.exp(1j * w * self.period) if self.period > 0 else 1j * w
         unit = np.eye(len(self.A))
         values = [self.C @ np.linalg.solve(s * unit - self.A, self.B) + self.D for s in points]
         return np.moveaxis(np.array(values), 0, -1)
 
+    @checked
     def discretize(self, period: float) -> "StateSpace":
         """The same system from sample to sample, with inputs that are held between samples: exact. ``period`` in s."""
         import numpy as np
@@ -146,7 +148,17 @@ def _require_free(model: "CompiledModel", instead: str) -> None:
         )
 
 
-def _inputs_of(model: "CompiledModel", t: float, inputs: Any) -> "NDArray[Any]":
+def _state_of(model: "CompiledModel", x: Any) -> "NDArray[Any]":
+    """A copy."""
+    if x is None:
+        return model.start.copy()
+    state: Any = model.state(x) if isinstance(x, Mapping) else array("x", x).copy()
+    if state.shape != (len(model.state_names),):
+        raise input_error(f"x has the shape {state.shape}", f"give ({len(model.state_names)},), or names and values")
+    return state  # type: ignore[no-any-return]
+
+
+def _inputs_of(model: "CompiledModel", t: float, inputs: Any, argument: str = "inputs") -> "NDArray[Any]":
     import numpy as np
 
     if inputs is None:
@@ -157,9 +169,9 @@ def _inputs_of(model: "CompiledModel", t: float, inputs: Any) -> "NDArray[Any]":
         for name, value in inputs.items():
             if name not in names:
                 raise input_error(f"there is no input '{name}'", f"inputs: {', '.join(names) or 'none'}")
-            u[names.index(name)] = value
+            u[names.index(name)] = value_of(model.model, argument, name, value)
         return u
-    u = np.atleast_1d(np.asarray(inputs, dtype=float))
+    u = np.atleast_1d(array(argument, inputs))
     if u.shape != (len(names),):
         raise input_error(f"{u.size} inputs are given, and there are {len(names)}", "give one number for each input")
     return u
@@ -215,7 +227,7 @@ def linearize(
 
     _require_free(model, "model.linearize() gives A and B on the manifold of the constraints")
     at = model.span[0] if t is None else t
-    state = model.start if x is None else model.state(x) if isinstance(x, Mapping) else np.asarray(x, dtype=float)
+    state = _state_of(model, x)
     u = _inputs_of(model, at, inputs)
     names = model.state_names if outputs is None else [outputs] if isinstance(outputs, str) else list(outputs)
     B = model.jac_u(at, state, u, mode=mode) if len(u) > 0 else np.zeros((len(state), 0))
@@ -251,7 +263,7 @@ def trim(
     if not model.input_names:
         raise input_error(f"{model.model.name} has no inputs that could hold a state", "declare them in [inputs]")
     at = model.span[0] if t is None else t
-    state = np.array(model.start if x is None else model.state(x) if isinstance(x, Mapping) else x, dtype=float)
+    state = _state_of(model, x)
     names = model.input_names
     chosen = list(names) if inputs is None else [inputs] if isinstance(inputs, str) else list(inputs)
     for name in chosen:
@@ -260,7 +272,7 @@ def trim(
     places = [names.index(name) for name in chosen]
     n = model.coordinate_count
     first_order = list(range(2 * n, len(state)))
-    u = _inputs_of(model, at, guess)
+    u = _inputs_of(model, at, guess, "guess")
     rows = list(range(n, len(state)))
     scale = max(1.0, float(np.abs(model.rhs(at, state, u)[rows]).max()))
     rank = 0
@@ -292,7 +304,7 @@ def discretize(
     if not (np.isfinite(period) and period > 0):
         raise input_error(f"the period {period} is not positive", "give the sampling period in s")
     begin = model.span[0] if t is None else t
-    state = np.array(model.start if x is None else model.state(x) if isinstance(x, Mapping) else x, dtype=float)
+    state = _state_of(model, x)
     u = _inputs_of(model, begin, inputs)
     n, k = len(state), len(u)
 

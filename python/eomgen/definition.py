@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar, Dict, List, Mapping, Optional, TypeVar
 
+from .arguments import wrong
 from .expressions import Condition, Expression, number
 
 if TYPE_CHECKING:
@@ -236,6 +237,8 @@ class Definition:
 
     def add(self, section: AnySection) -> AnySection:
         """Appends a section and returns it."""
+        if not isinstance(section, Section):
+            raise wrong("section", section, "a section", 'give one, such as eomgen.Force(gravity="-g*E2")')
         self._sections.append(section)
         return section
 

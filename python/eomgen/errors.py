@@ -3,6 +3,10 @@
 
 from __future__ import annotations
 
+import os
+import sys
+import warnings
+
 
 class Error(Exception):
     """An error of a model, of an option, of a run, or of a tool.
@@ -47,6 +51,10 @@ class Error(Exception):
         return {"check": 1, "input": 2, "numerical": 3, "tool": 4}[self.kind]
 
 
+class ArgumentError(Error, TypeError):
+    """An Error about the type of an argument, which programs may also catch as a TypeError."""
+
+
 def input_error(message: str, remedy: str, stage: str = "python") -> Error:
     """An Error without a place in a file."""
     return Error(f"error: {message}\n  remedy: {remedy}", stage, message=message, remedy=remedy)
@@ -58,3 +66,12 @@ class Interrupted(Exception):
 
 class ModelWarning(UserWarning):
     """A warning about a model or a result."""
+
+
+def warn(text: str) -> None:
+    """A ModelWarning at the line that called the package."""
+    folder = os.path.dirname(__file__)
+    level, frame = 1, sys._getframe()
+    while frame.f_back is not None and os.path.dirname(frame.f_code.co_filename) == folder:
+        level, frame = level + 1, frame.f_back
+    warnings.warn(text.rstrip("\n"), ModelWarning, stacklevel=level)

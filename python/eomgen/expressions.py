@@ -125,7 +125,10 @@ def number(value: "int | float") -> str:
     """The shortest decimal that denotes a number."""
     if isinstance(value, int):
         return str(int(value))
-    text = repr(float(value))
+    try:
+        text = repr(float(value))
+    except (TypeError, ValueError):
+        raise TypeError(f"{value!r} is no value of the model language: give a number, text or an expression") from None
     return text[:-2] if text.endswith(".0") else text
 
 
@@ -155,8 +158,9 @@ def call(name: str, *arguments: Any) -> Expression:
 
 def quantity(value: "int | float", unit: str) -> Expression:
     """A number with its unit within an expression: ``quantity(0.3, "N/m")*x``."""
-    text = Expression(f"{number(abs(value))}[{unit}]")
-    return -text if value < 0 else text
+    digits = number(value)
+    text = Expression(f"{digits.lstrip('-')}[{unit}]")
+    return -text if digits.startswith("-") else text
 
 
 def if_(condition: Condition, x: Any, y: Any) -> Expression:

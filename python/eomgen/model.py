@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 import os
-import warnings
-from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Callable, List, Mapping, Optional, Sequence, Tuple
 
 from . import _core
+from .arguments import checked, converters_of
 from .compiled import CompiledModel
-from .errors import ModelWarning, input_error
+from .errors import input_error, warn
 from .records import (
     Benchmark,
     Certificate,
@@ -28,23 +28,16 @@ from .records import (
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from .definition import Definition
     from .derivation import Derivation, SympyEquations
 
 Stage = Optional[Callable[[str], None]]
 Progress = Optional[Callable[[float], Optional[bool]]]
-Values = Optional[Mapping[str, float]]
-
-
-def _warn(text: str) -> None:
-    warnings.warn(text.rstrip("\n"), ModelWarning, stacklevel=3)
+Values = Optional[Mapping[str, "float | str"]]
 
 
 def _callbacks(on_stage: Stage, on_progress: Progress) -> _core.Callbacks:
-    return _core.Callbacks(on_stage, on_progress, _warn)
-
-
-def _names(names: "Sequence[str] | str | None") -> List[str]:
-    return [names] if isinstance(names, str) else list(names or ())
+    return _core.Callbacks(on_stage, on_progress, warn)
 
 
 class ReaderWarning(Record):
@@ -73,21 +66,24 @@ class Model:
 
     __slots__ = ("_core",)
 
-    def __init__(self, text: str, name: str = "model", folder: "str | os.PathLike[str]" = "") -> None:
+    @checked
+    def __init__(self, text: "str | Definition", name: str = "model", folder: "str | os.PathLike[str]" = "") -> None:
         """Reads a model from text in the format of model files. ``name``: of the model, and of the file in errors.
 
         ``folder``: of CSV files that the text names; without it the text may name none.
         """
-        self._core = _core.Model.from_text(str(text), name, os.fspath(folder))
+        self._core = _core.Model.from_text(text, name, folder)
 
     @classmethod
+    @checked
     def from_file(cls, path: "str | os.PathLike[str]") -> "Model":
         """Reads a model file. Raises Error if it is not a valid model."""
         model = cls.__new__(cls)
-        model._core = _core.Model.from_file(os.fspath(path))
+        model._core = _core.Model.from_file(path)
         return model
 
     @classmethod
+    @checked
     def from_urdf(
         cls,
         path: "str | os.PathLike[str]",
@@ -108,23 +104,24 @@ class Model:
         joints whose limits are end stops. ``parameters``: masses, centres, tensors as parameters. What has no meaning
         in a model is a ModelWarning with its line.
         """
-        file = os.fspath(path)
         found = _core.import_robot(
-            file, floating, attitude, friction, actuators, _names(stops), parameters, exact_angles
+            path, floating, attitude, friction, actuators, list(stops), parameters, exact_angles
         )
         for what, why, count, line in found["left_out"]:
-            text = f"{file}:{line}: '{what}' is not in the model ({count} times): {why}"
-            warnings.warn(text, ModelWarning, stacklevel=2)
-        base = os.path.splitext(os.path.basename(file))[0]
+            text = f"{path}:{line}: '{what}' is not in the model ({count} times): {why}"
+            warn(text)
+        base = os.path.splitext(os.path.basename(path))[0]
         return cls(found["text"], name or base)
 
     @classmethod
+    @checked
     def from_mjcf(cls, path: "str | os.PathLike[str]", **options: Any) -> "Model":
         """Reads a robot file of MuJoCo (MJCF). Options are those of from_urdf; the file states what is free."""
         return cls.from_urdf(path, **options)
 
     @classmethod
-    def from_text(cls, text: str, name: str = "model", folder: "str | os.PathLike[str]" = "") -> "Model":
+    @checked
+    def from_text(cls, text: "str | Definition", name: str = "model", folder: "str | os.PathLike[str]" = "") -> "Model":
         """Reads a model from text in the format of model files. ``folder``: of CSV files that the text names."""
         return cls(text, name, folder)
 
@@ -176,10 +173,12 @@ class Model:
         """Warnings of the model reader."""
         return [ReaderWarning(**w) for w in self._core.warnings()]
 
+    @checked
     def check(self, *, on_stage: Stage = None) -> Examination:
         """Classifies the model: degrees of freedom, constraints, forces, conserved quantities, singular sets."""
         return Examination(**self._core.check(_callbacks(on_stage, None)))
 
+    @checked
     def derive(
         self,
         approach: str = "auto",
@@ -192,23 +191,26 @@ class Model:
         ``approach``: "I" (constraint forces appear), "II" (constraints are eliminated first) or "auto". ``show``: kinds
         of formulas, as in ``eomgen derive --show``; by default "equations", "constraints", "reactions", "friction".
         """
-        kinds = None if show is None else _names(show)
-        return Equations(**self._core.derive(approach, kinds, _callbacks(on_stage, None)))
+        return Equations(**self._core.derive(approach, show, _callbacks(on_stage, None)))
 
+    @checked
     def derivation(self, approach: str = "II", *, on_stage: Stage = None) -> "Derivation":
         """Derives the equations of motion as data: M qddot = f + A^T lambda. "auto" means approach II."""
         from .derivation import Derivation
 
         return Derivation(**self._core.derivation(approach, _callbacks(on_stage, None)))
 
+    @checked
     def to_sympy(self, approach: str = "II", *, functions_of_time: bool = False) -> "SympyEquations":
         """The equations of motion as expressions of SymPy: ``derivation(approach).to_sympy()``."""
         return self.derivation(approach).to_sympy(functions_of_time)
 
+    @checked
     def document(self, *, seed: int = 1, on_stage: Stage = None) -> str:
         """Returns the whole derivation as a LaTeX document, checked against the independent oracle."""
         return self._core.document(seed, _callbacks(on_stage, None))
 
+    @checked
     def verify(
         self,
         *,
@@ -227,6 +229,7 @@ class Model:
         callbacks = _callbacks(on_stage, on_progress)
         return Certificate(**self._core.verify(digits, points, compile, seed, callbacks))
 
+    @checked
     def emit(
         self,
         target: str = "cpp",
@@ -247,10 +250,11 @@ class Model:
         """
         callbacks = _callbacks(on_stage, None)
         found = self._core.emit(
-            target, approach, form, _names(functions), _names(outputs), _names(fixed), real, seed, callbacks
+            target, approach, form, list(functions), list(outputs), list(fixed), real, seed, callbacks
         )
         return Sources(**found)
 
+    @checked
     def run(
         self,
         scene: str = "default",
@@ -278,7 +282,8 @@ class Model:
     ) -> Motion:
         """Integrates a scene and estimates the error of the result.
 
-        ``parameters`` replaces values of parameters and initial values of coordinates and rates. ``t_end``, ``step``
+        ``parameters`` replaces values of parameters and constant inputs, and initial values of coordinates, rates and
+        states: numbers in SI units, or text with a unit, "50 cm". ``t_end``, ``step``
         (fixed), ``max_step`` and ``every`` (interval of rows) are in s. ``outputs``: columns beside the coordinates;
         "all": every output. ``solver``: one of eomgen.solvers(), or "auto". ``tier``: "jit" (machine code in memory),
         "compiled" (the C compiler) or "auto". ``max_steps``: 0 is the solver's default. ``estimate``: "bounded"
@@ -287,7 +292,7 @@ class Model:
         """
         options = {
             "scene": scene,
-            "parameters": parameters and dict(parameters),
+            "parameters": parameters,
             "t_end": t_end,
             "rtol": rtol,
             "atol": atol,
@@ -295,7 +300,7 @@ class Model:
             "max_step": max_step,
             "every": every,
             "solver": solver,
-            "outputs": _names(outputs),
+            "outputs": list(outputs),
             "approach": approach,
             "form": form,
             "tier": tier,
@@ -307,6 +312,7 @@ class Model:
         }
         return Motion(**self._core.run(options, row, _callbacks(on_stage, on_progress)))
 
+    @checked
     def compile(
         self,
         scene: str = "default",
@@ -332,9 +338,9 @@ class Model:
         """
         options = {
             "scene": scene,
-            "parameters": parameters and dict(parameters),
-            "functions": None if functions is None else _names(functions),
-            "outputs": _names(outputs),
+            "parameters": parameters,
+            "functions": functions,
+            "outputs": list(outputs),
             "approach": approach,
             "form": form,
             "tier": tier,
@@ -344,6 +350,7 @@ class Model:
         }
         return CompiledModel(self, options, _callbacks(on_stage, None))
 
+    @checked
     def sweep(
         self,
         points: "Optional[Mapping[str, ArrayLike]]" = None,
@@ -359,7 +366,7 @@ class Model:
         are the runs, the last one varying fastest; with ``points`` each point goes with every combination. ``jobs``:
         threads, by default one for each processor. ``options``: those of ``run``.
         """
-        names, values = _sweep_points(dict(points or {}), dict(grid or {}))
+        names, values = _sweep_points(points or {}, grid or {})  # type: ignore[arg-type]
         known = {
             "scene", "parameters", "t_end", "rtol", "atol", "step", "max_step", "solver", "outputs", "approach", "form",
             "tier", "max_steps", "error_estimate", "estimate", "charts", "seed",
@@ -368,11 +375,12 @@ class Model:
             if name not in known:
                 raise TypeError(f"sweep() has no option '{name}'; it takes points, grid, jobs, on_progress and of run() "
                                 f"{', '.join(sorted(known))}")  # fmt: skip
-        if "outputs" in options:
-            options["outputs"] = _names(options["outputs"])
+        converters = converters_of(type(self).run)
+        options = {name: converters[name](name, value, self) for name, value in options.items()}
         found = self._core.sweep(options, names, values, jobs or os.cpu_count() or 1, _callbacks(None, on_progress))
         return Sweep(**found)
 
+    @checked
     def inverse(
         self,
         scene: str = "default",
@@ -392,10 +400,11 @@ class Model:
         ``constraints``: those whose forces are wanted, by default all that prescribe a coordinate.
         """
         callbacks = _callbacks(on_stage, on_progress)
-        values = dict(parameters or {})
-        found = self._core.inverse(scene, values, t_end, every, rtol, atol, _names(constraints), seed, callbacks)
+        values = parameters or {}
+        found = self._core.inverse(scene, values, t_end, every, rtol, atol, list(constraints), seed, callbacks)
         return InverseDynamics(**found)
 
+    @checked
     def linearize(
         self,
         scene: str = "default",
@@ -411,9 +420,10 @@ class Model:
         ``outputs``: names for C and D; without them those of the scene that have a slope there.
         """
         callbacks = _callbacks(on_stage, None)
-        values = dict(parameters or {})
-        return Linearization(**self._core.linearize(scene, values, time, seed, _names(outputs), callbacks))
+        values = parameters or {}
+        return Linearization(**self._core.linearize(scene, values, time, seed, outputs or [], callbacks))
 
+    @checked
     def equilibria(
         self,
         scene: str = "default",
@@ -431,9 +441,10 @@ class Model:
         ``starts``: initial guesses of the search.
         """
         callbacks = _callbacks(on_stage, on_progress)
-        found = self._core.equilibria(scene, dict(parameters or {}), dict(hold or {}), starts, seed, callbacks)
+        found = self._core.equilibria(scene, parameters or {}, hold or {}, starts, seed, callbacks)
         return SteadyMotions(**found)
 
+    @checked
     def bench(
         self,
         scene: str = "default",
@@ -451,11 +462,12 @@ class Model:
         ``max_seconds``: the limit of a run.
         """
         callbacks = _callbacks(on_stage, None)
-        values, names = dict(parameters or {}), _names(solvers)
+        values, names = parameters or {}, list(solvers)
         return Benchmark(
             **self._core.bench(scene, values, t_end, names, max_seconds, other_libraries, seed, callbacks)
         )
 
+    @checked
     def stress(
         self,
         scene: str = "default",
@@ -471,10 +483,11 @@ class Model:
     ) -> StressTest:
         """Runs solvers on stiff and extreme variations of a scene. ``quick``: few variations of each kind."""
         callbacks = _callbacks(on_stage, None)
-        values, names = dict(parameters or {}), _names(solvers)
+        values, names = parameters or {}, list(solvers)
         found = self._core.stress(scene, values, t_end, names, max_seconds, max_steps, quick, seed, callbacks)
         return StressTest(**found)
 
+    @checked
     def report(
         self,
         path: "str | os.PathLike[str] | None" = None,
@@ -496,10 +509,10 @@ class Model:
             with open(os.path.join(folder, self.name + ".toml"), "w", encoding="utf-8") as file:
                 file.write(self.text)
             arguments = ["report", self.name + ".toml", "--out", "page.html", "--scene", scene]
-            for name, value in dict(parameters or {}).items():
-                arguments += ["--set", f"{name}={float(value)!r}"]
+            for name, value in (parameters or {}).items():
+                arguments += ["--set", f"{name}={value!r}"]
             if t_end is not None:
-                arguments += ["--t-end", repr(float(t_end))]
+                arguments += ["--t-end", repr(t_end)]
             if solver is not None:
                 arguments += ["--solver", solver]
             call_program(arguments, folder)
@@ -515,6 +528,7 @@ class Report(Record):
 
     html: str
 
+    @checked
     def write(self, path: "str | os.PathLike[str]") -> None:
         """Writes the page to a file."""
         with open(path, "w", encoding="utf-8") as file:
@@ -526,12 +540,12 @@ class Report(Record):
         return f'<iframe srcdoc="{html.escape(self.html)}" width="100%" height="700" style="border: 0"></iframe>'
 
 
-def _sweep_points(points: Dict[str, Any], grid: Dict[str, Any]) -> "Tuple[List[str], NDArray[Any]]":
+def _sweep_points(
+    columns: "Mapping[str, NDArray[Any]]", axes: "Mapping[str, NDArray[Any]]"
+) -> "Tuple[List[str], NDArray[Any]]":
     """Names, and K x P values."""
     import numpy as np
 
-    columns = {name: np.atleast_1d(np.asarray(values, dtype=float)) for name, values in points.items()}
-    axes = {name: np.atleast_1d(np.asarray(values, dtype=float)) for name, values in grid.items()}
     if not columns and not axes:
         raise input_error("a sweep has no points", "give points={'m': [1, 2]} or grid={'m': [1, 2], 'k': [3, 4]}")
     for name, values in {**columns, **axes}.items():

@@ -6,6 +6,8 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any, Dict, Iterator, List, NamedTuple, Optional, Sequence
 
+from .arguments import checked
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -251,6 +253,7 @@ class Sources(Record):
     certificate: str
     single_precision_error: float
 
+    @checked
     def write(self, folder: "str | os.PathLike[str]" = ".") -> List[str]:
         """Writes the files into a folder, which is made if needed, and returns their paths."""
         os.makedirs(folder, exist_ok=True)

@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Callable, Mapping, Optional
+from typing import TYPE_CHECKING, Any, Callable, Optional
 
 from . import _core
+from .arguments import array, checked, number, text, values_by_name, wrong
 from .errors import input_error
 
 if TYPE_CHECKING:
@@ -26,11 +27,12 @@ class Simulation(_core.Simulation):
     does that. One thread at a time may use a simulation.
     """
 
+    @checked
     def __init__(
         self,
         model: "CompiledModel",
         *,
-        parameters: Optional[Mapping[str, float]] = None,
+        parameters: Any = None,
         rtol: Optional[float] = None,
         atol: Optional[float] = None,
         step: Optional[float] = None,
@@ -39,11 +41,13 @@ class Simulation(_core.Simulation):
         every: Optional[float] = None,
         max_steps: int = 0,
     ) -> None:
-        """``parameters`` replaces values and initial values of the compiled model. ``step`` (fixed), ``max_step`` and
+        """``parameters`` replaces values and initial values of the compiled model, as of ``Model.run``. ``step`` (fixed), ``max_step`` and
         ``every`` (interval of rows; None: no rows) are in s. ``max_steps``: of one advance; 0 is the solver's default.
         """
+        if not isinstance(model, _core.CompiledModel):
+            raise wrong("model", model, "a CompiledModel", "give the result of model.compile()")
         options = {
-            "parameters": parameters and dict(parameters),
+            "parameters": values_by_name(model.model, "parameters", parameters or {}),
             "rtol": rtol,
             "atol": atol,
             "step": step,
@@ -71,7 +75,7 @@ class Simulation(_core.Simulation):
 
         The function should be smooth within one advance, because its kinks are not known.
         """
-        self._set_input(name, value)
+        self._set_input(text("name", name), value if callable(value) else number("value", value))
 
     def control(self, t: float, inputs: "Callable[[float, NDArray[Any]], ArrayLike]", every: float) -> Any:
         """Advances until t in s under a sampled controller, and returns the last Advance.
@@ -79,6 +83,9 @@ class Simulation(_core.Simulation):
         ``inputs(t, x)`` is called every ``every`` seconds from here on and returns (U,), which is held until the next
         call. Ends early at an event that stops the scene.
         """
+        t, every = number("t", t), number("every", every)
+        if not callable(inputs):
+            raise wrong("inputs", inputs, "a function", "give a function of (t, x) that returns (U,)")
         if not every > 0:
             raise input_error("the interval of a controller is not positive", "give a number of seconds")
         start, k = self.t, 0
@@ -98,9 +105,10 @@ class Simulation(_core.Simulation):
         import numpy as np
 
         names = self._model.input_names
-        at = np.asarray(times, dtype=float)
-        table = np.asarray(inputs, dtype=float).reshape(len(at), -1)
-        if at.ndim != 1 or len(at) == 0 or np.any(np.diff(at) <= 0) or table.shape[1] != len(names):
+        t, at, table = number("t", t), array("times", times), array("inputs", inputs)
+        if table.ndim == 1 and at.ndim == 1 and len(at) > 0 and len(table) % len(at) == 0:
+            table = table.reshape(len(at), -1)
+        if at.ndim != 1 or len(at) == 0 or np.any(np.diff(at) <= 0) or table.shape != (len(at), len(names)):
             raise input_error(
                 f"the table of inputs has the shapes {at.shape} and {table.shape}",
                 f"give increasing times (K,) and inputs (K, {len(names)})",

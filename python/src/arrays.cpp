@@ -7,6 +7,10 @@ namespace eomgen::python {
 
 using py::detail::npy_api;
 
+py::object converted(const char* converter, const char* name, py::handle value) {
+  return py::module_::import("eomgen.arguments").attr(converter)(name, value);
+}
+
 void add_method(py::handle type, const char* name, const char* doc, Fast function) {
   static std::deque<PyMethodDef> definitions;  // descriptors refer to them
   definitions.push_back(
@@ -16,7 +20,7 @@ void add_method(py::handle type, const char* name, const char* doc, Fast functio
   py::setattr(type, name, method);
 }
 
-Numbers::Numbers(PyObject* from, const char* name) {
+Numbers::Numbers(PyObject* from, const char* name) : name_(name) {
   if (from == nullptr) return;
   if (PyFloat_Check(from) || PyLong_CheckExact(from)) {
     scalar_ = PyFloat_AsDouble(from);
@@ -35,15 +39,17 @@ Numbers::Numbers(PyObject* from, const char* name) {
       return;
     }
   }
-  copy_ = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(from);
-  if (!copy_) throw py::type_error(std::string(name) + " has to be a number or an array of numbers");
+  copy_ = converted("array", name, from);
+  copy_ = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(copy_);
   take(copy_.ptr());
 }
 
 void Numbers::take(PyObject* array) {
   const auto* const from = py::detail::array_proxy(array);
   dimensions_ = from->nd;
-  if (dimensions_ > 2) throw py::value_error("an array has more than two dimensions");
+  if (dimensions_ > 2)
+    throw Error("python", {}, std::string(name_) + " has " + std::to_string(dimensions_) + " dimensions",
+                "give one row of numbers, or a row for each state");
   size_ = 1;
   for (int i = 0; i < dimensions_; ++i) size_ *= shape_[static_cast<std::size_t>(i)] = from->dimensions[i];
   data_ = reinterpret_cast<const double*>(from->data);

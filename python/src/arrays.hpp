@@ -73,6 +73,9 @@ std::array<PyObject*, count> take_arguments(const char* function, const std::arr
   return found;
 }
 
+/// The value of an argument from a function of eomgen.arguments, which throws an error of Python that names it.
+py::object converted(const char* converter, const char* name, py::handle value);
+
 /// The float64 numbers of an array or of a sequence. They are those of the array itself if it is contiguous.
 class Numbers {
  public:
@@ -92,6 +95,7 @@ class Numbers {
  private:
   void take(PyObject* array);
 
+  const char* name_;
   py::object copy_;
   const double* data_ = nullptr;
   int dimensions_ = 0;

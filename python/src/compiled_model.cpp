@@ -54,11 +54,7 @@ std::size_t step_of(const char* name, const Numbers& given, std::size_t length, 
 std::vector<int> modes_of(PyObject* given, const CompiledModel& model) {
   std::vector<int> mode;
   if (given == nullptr) return mode;
-  if (PyLong_Check(given)) {
-    mode.push_back(py::cast<int>(given));
-  } else {
-    mode = py::cast<std::vector<int>>(given);
-  }
+  mode = converted("integers", "mode", given).cast<std::vector<int>>();
   const auto size = [](const auto& m) {
     if constexpr (requires { m.mode_size(); })
       return m.mode_size();
@@ -238,7 +234,7 @@ py::tuple scene_values(const SceneValues& values) {
   return py::make_tuple(values.t_start, values.t_end, array_of(values.parameters), array_of(values.state));
 }
 
-py::array taylor(const CompiledModel& model, double t, const py::array& state, int order, const py::object& inputs,
+py::array taylor(const CompiledModel& model, double t, const py::object& state, int order, const py::object& inputs,
                  const py::object& parameters, const py::object& mode) {
   const std::size_t N = model.states().size();
   const auto given = [](const py::object& object) { return object.is_none() ? nullptr : object.ptr(); };
@@ -247,7 +243,6 @@ py::array taylor(const CompiledModel& model, double t, const py::array& state, i
     refuse_shape("x", x, "(" + std::to_string(N) + ",)");
   step_of("inputs", u, model.inputs().size(), 1, false);
   step_of("parameters", p, model.parameters().size(), 1, false);
-  if (order < 0) throw py::value_error("order is negative");
   const std::vector<int> modes = modes_of(given(mode), model);
   Arguments at{t, x.data(), p.data(), u.data()};
   set_mode(at, modes);
@@ -269,7 +264,8 @@ std::size_t step_of_number(const char* name, const Numbers& given, std::size_t c
 /// missing.
 py::tuple fixed_step(const CompiledModel& model, const py::object& t_given, const py::object& h_given,
                      const py::object& state, const py::object& inputs_given, const py::object& parameters,
-                     const py::object& mode, const std::string& method, bool derivatives) {
+                     const py::object& mode, const py::object& method_given, bool derivatives) {
+  const auto method = converted("text", "method", method_given).cast<std::string>();
   const auto given = [](const py::object& object) { return object.is_none() ? nullptr : object.ptr(); };
   const bool calls = !inputs_given.is_none() && PyCallable_Check(inputs_given.ptr()) != 0;
   const py::object inputs = calls ? inputs_given(t_given, state) : inputs_given;
@@ -349,7 +345,12 @@ void add_compiled_model(py::module_& module) {
       .def("_coordinate_count", &CompiledModel::coordinate_count)
       .def("_certificate", &CompiledModel::certificate)
       .def("_tier", &CompiledModel::tier)
-      .def("has", &CompiledModel::has, "Whether a function was compiled: \"rhs\", \"jac\", ..")
+      .def(
+          "has",
+          [](const CompiledModel& f, const py::object& function) {
+            return f.has(converted("text", "function", function).cast<std::string>());
+          },
+          py::arg("function"), "Whether a function was compiled: \"rhs\", \"jac\", ..")
       .def("_values", [](const CompiledModel& f) { return scene_values(f.values()); })
       .def("_scene_values",
            [](const CompiledModel& f, const std::map<std::string, double>& replaced) {

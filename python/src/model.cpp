@@ -335,6 +335,10 @@ void add_model(py::module_& module) {
       .def("parameters", &Model::parameters)
       .def("inputs", &Model::inputs)
       .def("scenes", &Model::scenes)
+      .def("number_of",
+           [](const Model& model, const std::string& name, const std::string& text, const py::object& warning) {
+             return model.number_of(name, text, {.on_warning = [&](const std::string& what) { warning(what); }});
+           })
       .def("warnings",
            [](const Model& model) {
              return list_of(model.reader_warnings(), [](const Warning& w) {

@@ -38,6 +38,12 @@ std::unique_ptr<PythonSimulation, DeleteWithoutGil<PythonSimulation>> simulate(c
   return Holder<PythonSimulation>(new PythonSimulation(model, options));
 }
 
+/// Null: None.
+double number(const char* name, PyObject* given) {
+  if (given != nullptr && PyFloat_Check(given)) return PyFloat_AS_DOUBLE(given);
+  return converted("number", name, given == nullptr ? Py_None : given).cast<double>();
+}
+
 /// `advance` returns what an interruption left undone, if the handler of the signal raised nothing.
 template <class Piece>
 Advance advance_in(PythonSimulation& s, Piece&& piece) {
@@ -85,9 +91,7 @@ PyObject* result_of(Advance&& end) {
 PyObject* advance(PyObject* self, PyObject* const* arguments, Py_ssize_t count, PyObject* keywords) {
   return guarded([&] {
     const auto given = take_arguments<1>("advance", {"t"}, 1, arguments, count, keywords);
-    const double t = given[0] == nullptr ? 0 : PyFloat_AsDouble(given[0]);
-    if (given[0] == nullptr || (t == -1 && PyErr_Occurred() != nullptr))
-      throw py::type_error("advance() takes a number");
+    const double t = number("t", given[0]);
     auto& s = object_of<PythonSimulation>(self);
     return result_of(advance_in(s, [&](const CallControl& control) { return s.simulation.advance(t, control); }));
   });
@@ -97,7 +101,7 @@ PyObject* step(PyObject* self, PyObject* const* arguments, Py_ssize_t count, PyO
   return guarded([&] {
     const auto given = take_arguments<1>("step", {"limit"}, 0, arguments, count, keywords);
     double limit = std::numeric_limits<double>::infinity();
-    if (given[0] != nullptr) limit = py::cast<double>(py::handle(given[0]));
+    if (given[0] != nullptr) limit = number("limit", given[0]);
     auto& s = object_of<PythonSimulation>(self);
     return result_of(advance_in(s, [&](const CallControl& control) { return s.simulation.step(limit, control); }));
   });
@@ -132,8 +136,8 @@ void set_input(PythonSimulation& s, const std::string& name, const py::object& v
     const py::gil_scoped_acquire gil;
     Py_DECREF(f);
   });
-  s.simulation.set_input(name, [&s, function](double t) {
-    const auto call = [&] { s.last = py::handle(function.get())(t).cast<double>(); };
+  s.simulation.set_input(name, [&s, function, result = "the result of the input " + name](double t) {
+    const auto call = [&] { s.last = number(result.c_str(), py::handle(function.get())(t).ptr()); };
     if (s.control != nullptr) {
       s.control->call(call);
     } else {
@@ -181,7 +185,8 @@ void add_simulation(py::module_& module) {
           py::arg("values"), "Continues with other parameters: (P,). Parameters that depend on others do not follow.")
       .def(
           "set_state",
-          [](PythonSimulation& s, double t, const py::object& x) {
+          [](PythonSimulation& s, const py::object& t_given, const py::object& x) {
+            const double t = number("t", t_given.ptr());
             const Numbers values(x.ptr(), "x");
             const py::gil_scoped_release released;
             s.simulation.set_state(t, values.span());
@@ -192,7 +197,12 @@ void add_simulation(py::module_& module) {
           "save", [](const PythonSimulation& s) { return s.simulation.save(); },
           "Returns the state with inputs, parameters, modes of contacts, charts and step size.")
       .def(
-          "restore", [](PythonSimulation& s, const SimulationState& from) { s.simulation.restore(from); },
+          "restore",
+          [](PythonSimulation& s, const py::object& state) {
+            if (!py::isinstance<SimulationState>(state))
+              throw Error("python", {}, "state: it is not a saved state", "give the result of save()");
+            s.simulation.restore(state.cast<const SimulationState&>());
+          },
           py::arg("state"), "Continues from a saved state with the same bits.");
   add_method(type, "advance",
              "advance(t)\n--\n\nIntegrates until t in s, or to an event that stops the scene. Raises Error (kind "
