@@ -30,12 +30,9 @@ std::optional<std::string> ContactsReader::between_bodies(BodyContact& contact, 
   } else {
     points_in_contact(table, local);
   }
-  const Context direction{"a tangent", on_motion, Shape::vector, std::nullopt, ""},
-      any{"a contact", on_motion | on_velocity, Shape::vector, std::nullopt, ""};
-  if (table.find("tangent") == nullptr) {
-    local["t1"] = resolver_.text("unit(E1 - dot(E1, n)*n)", local, table.span, direction);
-    local["t2"] = resolver_.text("cross(n, t1)", local, table.span, direction);
-  }
+  const Context any{"a contact", on_motion | on_velocity, Shape::vector, std::nullopt, ""};
+  if (table.find("tangent") == nullptr)
+    default_tangents((local.at("n").dependencies & on_coordinate) != 0, table.span, local);
   local["o"] = resolver_.text("xb + pb", local, table.span, any);
   local["V"] = resolver_.text("vb + cross(wb, pb)", local, table.span, any);
   if (!shapes) return std::nullopt;

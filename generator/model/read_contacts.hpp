@@ -15,6 +15,8 @@ class ContactsReader : private SectionReader {
 
  private:
   std::map<std::string, TypedNode> plane_of_contact(const Value& on);
+  /// "t1" and "t2" for the normal "n", unless the model gives a direction.
+  void default_tangents(bool turns, Span span, std::map<std::string, TypedNode>& local);
   void tangent_of_contact(const Value& table, std::map<std::string, TypedNode>& local);
   void name_motion(std::uint32_t frame, const std::string& ending, Span span, std::map<std::string, TypedNode>& local);
   void read_contact_point(Constraint& constraint, const Value& table, const std::map<std::string, TypedNode>& local);

@@ -4,7 +4,11 @@
 // (7.38). With friction only the position remains a constraint; the law of friction replaces the others.
 #include <fmt/format.h>
 
+#include <array>
+#include <cmath>
+
 #include "model/read_contacts.hpp"
+#include "model/samples.hpp"
 
 namespace eomgen::model {
 namespace {
@@ -60,8 +64,7 @@ std::map<std::string, TypedNode> ContactsReader::plane_of_contact(const Value& o
     return plane;
   }
   plane["n"] = resolver_.unit_of_vector(normal, span);
-  plane["t1"] = resolver_.text("unit(E1 - dot(E1, n)*n)", plane, span, position);
-  plane["t2"] = resolver_.text("cross(n, t1)", plane, span, position);
+  default_tangents(false, span, plane);
   return plane;
 }
 
@@ -132,6 +135,36 @@ void ContactsReader::name_motion(std::uint32_t frame, const std::string& ending,
   local["v" + ending] = resolver_.text("ddt(x)", body, span, vector);
   local["w" + ending] = resolver_.check_context(resolver_.angular_velocity(frame, span), span, vector);
   local["e3" + ending] = resolver_.own_axis(frame, 2, span);
+}
+
+// Tangent 1 is the direction of E1 in the plane. A normal that is always along E1 takes E2 in its place. A normal that
+// turns about a fixed axis passes E1 in its turn, so tangent 1 turns with it, and is E1 where the normal is the axis
+// across both.
+void ContactsReader::default_tangents(bool turns, Span span, std::map<std::string, TypedNode>& local) {
+  constexpr int points = 4;
+  constexpr double zero = 1e-7;  // differences for basis vectors are good to 1e-10
+  std::array<bool, 3> across{true, true, true}, no_part{true, true, true};  // of E1, E2, E3, at all points
+  Samples samples(model_);
+  for (int i = 0; i < points; ++i) {
+    samples.next();
+    const std::array<double, 3> n = samples.vector(local.at("n").node);
+    for (std::size_t k = 0; k < 3; ++k) {
+      across[k] = across[k] && std::abs(n[k]) <= zero;
+      no_part[k] = no_part[k] && n[k] == 0;
+    }
+  }
+  std::string first = "unit(E1 - dot(E1, n)*n)";
+  if (no_part[1] && no_part[2])  // an angle of 90 deg leaves a part of 1e-17, which has a direction
+    first = "unit(E2 - dot(E2, n)*n)";
+  else if (turns && across[0])
+    first = "E1";
+  else if (turns && across[1])
+    first = "cross(E2, n)";
+  else if (turns && across[2])
+    first = "cross(n, E3)";
+  const Context direction{"a tangent", on_motion, Shape::vector, std::nullopt, ""};
+  local["t1"] = resolver_.text(first, local, span, direction);
+  local["t2"] = resolver_.text("cross(n, t1)", local, span, direction);
 }
 
 // The direction to which tangent 1 is closest, if the model gives one.

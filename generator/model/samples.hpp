@@ -21,6 +21,8 @@ class Samples {
   /// every process.
   void next();
   double value(NodeId node);
+  /// Components along E1, E2, E3. NaN for velocities, and for contravariant basis vectors.
+  std::array<double, 3> vector(NodeId node);
   double coordinate(std::uint32_t index) const { return q_[index]; }
   /// The value with one coordinate changed by `by`.
   double value_at_offset(NodeId node, std::uint32_t coordinate, double by);
@@ -30,11 +32,14 @@ class Samples {
 
  private:
   double fresh(const Node& node);
+  std::array<double, 3> fresh_vector(const Node& node);
+  std::array<double, 3> covariant(const Node& node);
   double random();
 
   const Model& model_;
   std::vector<double> q_;
   std::map<NodeId, double> known_;  // at this point
+  std::map<NodeId, std::array<double, 3>> known_vectors_;
   std::uint64_t state_ = 20041;
 };
 

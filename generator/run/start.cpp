@@ -43,6 +43,7 @@ class StartSolver {
     impose_fixed();
     leave(0);
     solve(0);
+    require_tangents(p_, rows_);
     leave(1);
     if (rows_.add_rolling()) {
       const std::vector<double> given = p_.qdot;

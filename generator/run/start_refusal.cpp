@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "numeric/dense.hpp"
@@ -198,6 +199,33 @@ void refuse_start(const StartProblem& problem, StartRows& rows, std::uint8_t ord
                           constraint.label, order == 0 || !constraint.holonomic() ? "" : " in its rates", off, relative,
                           start_tolerance),
               broken ? "give consistent values, or leave out rates that follow from the angular velocity" : remedy);
+}
+
+void require_tangents(const StartProblem& problem, const StartRows& rows) {
+  const model::Model& model = *problem.mechanics.model;
+  const auto refuse = [&](const model::Constraint& constraint) {
+    throw Error("scene", model.where(constraint.span),
+                fmt::format("the contact '{}' has no tangents at the start: its normal is there along the direction "
+                            "that tangent 1 is nearest to, which is 'tangent' or E1",
+                            constraint.name),
+                "give it a direction that the normal never has: tangent = \"E3\" or \"E2\"");
+  };
+  const auto is_finite = [&](const std::vector<symbolic::Ref>& refs) {
+    const std::vector<double> values = rows.evaluate(refs);
+    return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+  };
+  for (std::size_t j = 0; j < rows.contacts().size(); ++j) {
+    const std::optional<std::uint32_t> body_contact = problem.mechanics.contacts[j].body_contact;
+    if (body_contact && !is_finite(rows.contacts()[j].slip)) refuse(model.constraints[*body_contact]);
+  }
+  for (const std::size_t k : rows.of_order(1)) {
+    if (k >= rows.first_angular_velocity_row()) continue;
+    const mechanics::Constraint& equation = problem.mechanics.constraints[rows.constraint_of(k)];
+    if (equation.holonomic() || is_finite({rows.b()[k]})) continue;
+    for (const model::Constraint& constraint : model.constraints) {
+      if (constraint.name == equation.name && constraint.rolling) refuse(constraint);
+    }
+  }
 }
 
 }  // namespace eomgen::run

@@ -19,4 +19,8 @@ inline constexpr double start_rank_tolerance = 1e-10;
 [[noreturn]] void refuse_start(const StartProblem& problem, StartRows& rows, std::uint8_t order, std::size_t k,
                                const std::vector<std::size_t>& free);
 
+/// Throws the Error for a contact of a body whose normal is along the direction that defines its tangents. The current
+/// positions are those of the start.
+void require_tangents(const StartProblem& problem, const StartRows& rows);
+
 }  // namespace eomgen::run

@@ -251,3 +251,76 @@ TEST_CASE(
                "\"E3\", angle = \"g\" }\nposition = \"a.e1 + b.e1\"\n");
   CHECK(contains(expect(2, folder, {"check", "c.toml"}).err, "this axis is not fixed in the parent"));
 }
+
+namespace {
+
+/// A box between two jaws, which press on its vertical faces: `rotation` of the box, its axis e1 or E1, and a key.
+std::string gripper(const std::string& rotation, const std::string& axis, const std::string& tangent) {
+  const auto jaw = [&](const std::string& name, const std::string& at, const std::string& x) {
+    return "[[body]]\nname = \"" + name +
+           "\"\nmass = \"0.2 kg\"\ninertia = \"1 kg*m^2\"\nposition = { cartesian = [\"" + x +
+           "\", \"0\", \"h\"] }\nrotation = { fixed = true }\n[[constraint]]\nname = \"c" + name +
+           "\"\nsliding = { body = \"" + name + "\", at = \"" + at + "*E1\", on = \"box\", at_b = \"dot(" + name +
+           " + " + at + "*E1 - box, box.e3)*box.e3 - " + at + "*5*" + axis + "\", normal = \"" +
+           (at[0] == '-' ? "" : "-") + axis + "\"" + tangent +
+           " }\nfriction = { static = 0.6, dynamic = 0.6 }\nholds = \"unilateral\"\n";
+  };
+  return "format = 1\n[parameters]\nw = \"0.05 m\"\n[inputs]\nF = { unit = \"N\", default = 8 }\n[[body]]\nname = "
+         "\"box\"\n"
+         "mass = \"0.5 kg\"\ninertia = \"0.5[kg]*(2*w)^2/6\"\nposition = { cartesian = [\"x\", \"0\", \"z\"] }\n"
+         "rotation = { " +
+         rotation + " }\n" + jaw("L", "w/5", "a") + jaw("R", "-w/5", "b") +
+         "[[force]]\ngravity = \"-9.81[m/s^2]*E3\"\n[[force]]\ngeneralized = { a = \"F\", b = \"-F\", h = "
+         "\"9[N]\" }\n[scene.default]\nt = [0, 1.2]\ninitial = { x = 0, z = 0, a = \"-6/5*w\", b = "
+         "\"6/5*w\", h = 0 }\ninputs = { F = \"8[N] - 5[N/s]*t\" }\noutputs = [\"reaction.cL\", \"friction.cL.3\"]\n";
+}
+
+}  // namespace
+
+TEST_CASE("a contact on a vertical face needs no tangent, whether its normal is constant or turns with a body") {
+  const Folder folder;
+  for (const auto& [rotation, axis] : {std::pair<std::string, std::string>{R"(axis = "E2", angle = "th")", "box.e1"},
+                                       {R"(axis = "E2", angle = "th")", "unit(box.e1)"},
+                                       {"fixed = true", "E1"}}) {
+    CAPTURE(axis);
+    const auto end = [&](const std::string& tangent) {
+      folder.write("g.toml", gripper(rotation, axis, tangent));
+      const Json run = document(folder, {"run", "g.toml", "--no-error-estimate"});
+      CHECK(run["outcome"] == "done");
+      return run["final"];
+    };
+    const Json chosen = end(""), given = end(", tangent = \"E3\"");
+    for (const char* name : {"z", "h", "z_dot", "h_dot", "reaction.cL", "friction.cL.3"})
+      CHECK(chosen[name].get<double>() == doctest::Approx(given[name].get<double>()).epsilon(1e-8));
+    CHECK(given["h_dot"].get<double>() > given["z_dot"].get<double>() + 0.1);  // the box slides down in the jaws
+    // A tangent that turns with the normal has no kinks, such as |sin(th)|.
+    folder.write("g.toml", gripper(rotation, axis, ""));
+    CHECK_FALSE(contains(expect(0, folder, {"check", "g.toml"}).out, "sign("));
+  }
+}
+
+TEST_CASE("a contact whose normal is along E1 at the start, and may turn from it in space, asks for a tangent") {
+  const Folder folder;
+  const auto balls = [](const std::string& tangent) {
+    std::string text = "format = 1\n[parameters]\nR = \"0.1 m\"\n";
+    for (const std::string k : {"A", "B"})
+      text += "[[body]]\nname = \"" + k +
+              "\"\nmass = \"1 kg\"\ninertia = { sphere = \"R\" }\nposition = { cartesian = [\"x" + k + "\", \"y" + k +
+              "\", \"z" + k + "\"] }\nrotation = { euler_parameters = [\"p" + k + "\", \"q" + k + "\", \"r" + k +
+              "\", \"s" + k + "\"] }\n";
+    return text +
+           "[[constraint]]\nname = \"balls\"\nrolling = { body = \"A\", on = \"B\", shape = { sphere = \"R\" }, "
+           "shape_b = "
+           "{ sphere = \"R\" }" +
+           tangent +
+           " }\nfriction = { static = 0.3, dynamic = 0.3 }\nholds = \"unilateral\"\n[scene.default]\nt = [0, 1]\n"
+           "initial = { xA = 1, yA = 0, zA = 0, xA_dot = -1, xB = 0, yB = 0, zB = 0, pA = 1, pB = 1 }\n";
+  };
+  folder.write("b.toml", balls(""));
+  const std::string error = expect(2, folder, {"run", "b.toml"}).err;
+  CHECK(contains(error, "b.toml:17:8: error: the contact 'balls' has no tangents at the start"));
+  CHECK(contains(error, "remedy: give it a direction that the normal never has: tangent = \"E3\""));
+  folder.write("b.toml", balls(", tangent = \"E3\""));
+  const Json run = document(folder, {"run", "b.toml", "--no-error-estimate"});
+  CHECK(run["final"]["xB_dot"].get<double>() == doctest::Approx(-0.5));
+}
