@@ -22,6 +22,13 @@ print::PrintedFormula item_of(const mechanics::Mechanics& m, symbolic::Ref expre
   return print::render_expression(m, "", "", expression);
 }
 std::string shown(const mechanics::Mechanics& m, symbolic::Ref expression) { return item_of(m, expression).text; }
+/// The same, listed as left out if it is too long.
+std::string shown(const mechanics::Mechanics& m, symbolic::Ref expression, const std::string& what,
+                  Examination& found) {
+  const print::PrintedFormula item = item_of(m, expression);
+  if (!item.left_out.empty()) found.left_out.push_back({what, item.left_out});
+  return item.text;
+}
 
 /// A comparison, which the model holds as if(a < b, 1, 0) or if(a < b, 0, 1).
 std::string comparison(mechanics::Mechanics& m, model::NodeId condition) {
@@ -69,7 +76,9 @@ void add_constraints(const mechanics::Mechanics& m, Examination& found) {
     one.name = c.label;
     one.kind = c.holonomic() ? "holonomic" : "velocity";
     one.integrable = mechanics::name(m.classification[k].integrable);
-    if (c.holonomic()) one.integral = shown(m, c.psi) + " = 0";  // a holonomic constraint is its own integral
+    if (c.holonomic())
+      one.integral =
+          shown(m, c.psi, "the constraint " + c.label, found) + " = 0";  // a holonomic constraint is its own integral
     for (const mechanics::ConstraintIntegral& i : m.integrals) {
       if (i.label != c.label) continue;
       one.integral = shown(m, i.psi) + " = constant";
@@ -123,7 +132,8 @@ void add_contacts(const mechanics::Mechanics& m, Examination& found) {
     const std::size_t equations = contact.constraints.size();
     one.kind = equations == 0 ? "coordinate" : equations == 1 ? "surface" : "curve";
     one.law = contact.dimensions() == 0 ? "none" : contact.width ? "smooth" : "coulomb";
-    for (const symbolic::Ref w : contact.slip) one.slip.push_back(shown(m, w));
+    for (const symbolic::Ref w : contact.slip)
+      one.slip.push_back(shown(m, w, fmt::format("slip.{}.{}", contact.name, one.slip.size() + 1), found));
     one.unilateral = contact.unilateral;
     found.contacts.push_back(std::move(one));
   }

@@ -1,12 +1,37 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "print/render.hpp"
 
+#include <algorithm>
+
 #include "print/formulas.hpp"
 #include "print/named_lengths.hpp"
 
 namespace eomgen::print {
+namespace {
 
-std::vector<PrintedFormula> render(const mechanics::Mechanics& mechanics, const std::vector<Statement>& all) {
+// Of a formula in one line: somewhat more than an equation of 300 terms has, the longest that is written out.
+constexpr std::size_t most_factors = 3000, most_parts = 10000;
+
+/// Subtracts the parts of a formula from `left`; false if there are more.
+bool take_parts(const reading::Formula& formula, std::size_t& left) {
+  if (left == 0) return false;
+  --left;
+  const auto fits = [&](const reading::Formula& part) { return take_parts(part, left); };
+  return std::all_of(formula.args.begin(), formula.args.end(), fits) &&
+         std::all_of(formula.lower.begin(), formula.lower.end(), fits) &&
+         std::all_of(formula.upper.begin(), formula.upper.end(), fits);
+}
+
+}  // namespace
+
+std::vector<PrintedFormula> render(const mechanics::Mechanics& mechanics, const std::vector<Statement>& statements) {
+  std::vector<Statement> all = statements;
+  for (Statement& statement : all) {
+    std::size_t left = most_parts;
+    if (take_parts(statement.formula, left)) continue;
+    statement.formula = reading::mark("...");
+    if (statement.left_out.empty()) statement.left_out = reading::TermBudget().what();
+  }
   const Notation notation(mechanics);
   std::vector<PrintedFormula> items;
   for (const Statement& statement : all) {
@@ -61,7 +86,9 @@ PrintedFormula render_expression(const mechanics::Mechanics& mechanics, std::str
 PrintedFormula render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name,
                                  symbolic::Ref expression) {
   try {
-    return render_expression(mechanics, key, name, reading::display_sum(mechanics, expression));
+    const reading::Sum sum = reading::display_sum(mechanics, expression);
+    if (reading::has_more_factors(sum, most_factors)) throw reading::TermBudget();
+    return render_expression(mechanics, key, name, sum);
   } catch (const work::BudgetExceeded& over) {
     PrintedFormula item;
     item.left_out = over.what();

@@ -204,4 +204,24 @@ bool contains(const Sum& sum, const Symbol& symbol) {
   return found;
 }
 
+namespace {
+
+/// Subtracts the factors of a sum, and those of the sums within them, from `left`; false if there are more.
+bool take_factors(const Sum& sum, std::size_t& left) {
+  for (const auto& [monomial, coefficient] : sum.terms()) {
+    for (const Factor& factor : monomial) {
+      if (left == 0) return false;
+      --left;
+      for (const Sum& within : factor.atom->args) {
+        if (!take_factors(within, left)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+bool has_more_factors(const Sum& sum, std::size_t limit) { return !take_factors(sum, limit); }
+
 }  // namespace eomgen::reading

@@ -115,6 +115,9 @@ Content content(const Sum& sum);
 Sum divide(const Sum& sum, const Content& by);
 Monomial inverse(const Monomial& monomial);
 
+/// Whether the sum, with the sums within it, is written with more factors than `limit`.
+bool has_more_factors(const Sum& sum, std::size_t limit);
+
 /// Whether the term displayed first has a negative coefficient; decides which sign is pulled out of brackets.
 bool has_negative_leading_term(const Sum& sum);
 /// Terms in display order: accelerations, velocities, coordinates, the rest.

@@ -324,3 +324,36 @@ TEST_CASE("a contact whose normal is along E1 at the start, and may turn from it
   const Json run = document(folder, {"run", "b.toml", "--no-error-estimate"});
   CHECK(run["final"]["xB_dot"].get<double>() == doctest::Approx(-0.5));
 }
+
+TEST_CASE("check and derive skip constraints and slip speeds of 300 kB, and name them") {
+  const Folder folder;
+  folder.write("c.toml", R"toml(format = 1
+[parameters]
+R = "0.1 m"
+be = "15 deg"
+mu = { value = 0.5, unit = "1" }
+[[body]]
+name = "c"
+mass = "2 kg"
+inertia = { cylinder = ["R", "0.4 m"] }
+position = { cartesian = ["x", "y", "z"] }
+rotation = { euler_parameters = ["e0", "e1", "e2", "e3"] }
+[[force]]
+gravity = "-9.81[m/s^2]*E3"
+[[contact]]
+name = "g"
+body = "c"
+shape = { cylinder = ["R", "0.4 m"] }
+on = { point = "origin", normal = "sin(be)*E1 + cos(be)*E3" }
+friction = { static = "mu", dynamic = "mu" }
+)toml");
+  for (const char* command : {"check", "derive"}) {
+    CAPTURE(command);
+    const std::string out = expect(0, folder, {command, "c.toml"}).out;
+    CHECK(out.size() < 30000);
+    CHECK(contains(out, "too many terms to be written out"));
+  }
+  const Json found = document(folder, {"check", "c.toml"});
+  CHECK(left_out(found, "the constraint g_1"));
+  CHECK(left_out(found, "slip.g_1.2"));
+}
