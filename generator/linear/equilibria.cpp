@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "linear/newton.hpp"
+#include "linear/reversed_speeds.hpp"
 #include "numeric/numbers.hpp"
 #include "work.hpp"
 
@@ -32,7 +33,10 @@ class Search {
     held_->targets = request.targets;
     find_turns();
     result_.is_angle = turns_;
-    for (const EulerAngles& set : r_.euler_angles) regular_.push_back(flow_.tape({set.regular}));
+    for (const EulerAngles& set : r_.euler_angles) {
+      regular_.push_back(flow_.tape({set.regular}));
+      reversed_.push_back(reversed_by_turn(flow_, symmetry_, r_.start, r_.setting, set.places, 900 + r_.seed));
+    }
     rough_ = {rounded(r_.setting.parameters), rounded(r_.setting.inputs), rounded(r_.setting.held),
               rounded(r_.setting.leaf)};
   }
@@ -259,6 +263,7 @@ class Search {
         other[n_ + b] = -z[n_ + b];
         if (!(sign(other) > T(0))) continue;
         for (const std::size_t i : ignorable_entries(symmetry_)) other[i] = number<T>(r_.start[i]);
+        for (const std::size_t i : reversed_[k]) other[n_ + i] = -z[n_ + i];
         take(z, other);
         break;
       }
@@ -374,7 +379,8 @@ class Search {
   };
   std::vector<End> seen_;
   std::vector<bool> turns_;
-  std::vector<Tape> regular_;
+  std::vector<Tape> regular_;                       // per triple of Euler angles
+  std::vector<std::vector<std::size_t>> reversed_;  // speeds, where the other triple is that of a turned motion
 };
 
 }  // namespace

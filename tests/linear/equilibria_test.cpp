@@ -213,3 +213,25 @@ TEST_CASE("Sarrus' linkage: the plate rests where the spring carries it and half
   }
   CHECK(is_found);
 }
+
+TEST_CASE("bicycle: a steady motion and its turn by half a turn, in the other triple of Euler angles, are one") {
+  analysis::SteadyRequest request;
+  request.model = test::model_at(source_folder() + "/tests/linear/models/bicycle.toml");
+  request.starts = 40;
+  const analysis::SteadyMotions all = analysis::steady_motions(request);
+  REQUIRE(all.points.size() >= 4);
+  // A turn about the vertical changes none of these: how upright the frame is, and speeds.
+  const auto upright = [&](std::size_t k) {
+    return std::cos(value(all, k, "roll")) * std::cos(value(all, k, "pitch"));
+  };
+  for (std::size_t i = 0; i < all.points.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      double distance = std::abs(upright(i) - upright(k));
+      for (const char* name : {"steer", "z", "yaw_dot", "p_rear_dot"})
+        distance = std::max(distance, std::abs(value(all, i, name) - value(all, k, name)));
+      CAPTURE(i);
+      CAPTURE(k);
+      CHECK(distance > 1e-6);
+    }
+  }
+}
