@@ -45,13 +45,13 @@ class ContactForces {
 
   // The direction of slip, times the share of the Coulomb force that its law gives.
   direction(j) {
-    const at = this.contacts[j], w = this.slips(j).map((row) => this.rate(row)), speed = Math.hypot(...w);
+    const at = this.contacts[j], w = this.slips(j).map((row) => this.rate(row));
     if (at.width !== undefined) {
-      const size = Math.hypot(speed, this.c[at.width]);
+      const size = Math.hypot(...w, this.c[at.width]);
       return w.map((value) => (size === 0 ? 0 : value / size));
     }
     if (w.length === 1) return [this.mode[j].mode === -1 ? -1 : 1];
-    return speed <= this.leastSlip ? this.mode[j].direction : w.map((value) => value / speed);
+    return ledDirection(w, this.mode[j].direction, this.leastSlip, this.mode[j].starts ? this.startSlip() : this.leastSlip);
   }
   // A unit force: inputs and their shares. The normal one with the friction that follows from it, if `rubs`.
   normalPattern(j, rubs) {
@@ -118,7 +118,7 @@ class ContactForces {
         this.forceSize[j] += size / share;
         this.forcePerAcceleration[j] = Math.max(this.forcePerAcceleration[j], 1 / share);
       });
-      const {x: forces} = leastNorm(W, right);
+      const {x: found, rank} = leastNorm(W, right), forces = rank < patterns.length ? this.admissible(patterns, responses, found) : found;
       patterns.forEach((pattern, k) => {
         this.push(u, pattern, forces[k]);
         if (pattern.component >= 0) { this.passToStop(u, pattern, forces[k]); return; }
@@ -128,6 +128,22 @@ class ContactForces {
     }
     this.contacts.forEach((at, j) => this.slips(j).forEach((_, a) => { this.phi[j][a] = u[at.friction_input + a]; }));
     return true;
+  }
+  // Forces within the limits of the laws, if forces of least norm break them and others do not; see
+  // lib/eom/contacts/force_limits.hpp.
+  admissible(patterns, responses, found) {
+    const limits = this.contacts.map(() => null), largest = Math.max(0, ...this.forceSize);
+    patterns.forEach(({j, component}, k) => {
+      const at = this.contacts[j], limit = limits[j] = limits[j] || {normal: -1, scale: 1, given: 0, holds: false, coefficient: 0, tangents: [], size: this.forceSize[j] > 0 ? this.forceSize[j] : largest};
+      if (component < 0) Object.assign(limit, {normal: k, scale: this.c[at.normal_scale] * (at.unilateral ? 1 : this.mode[j].sign)});
+      else {
+        if (limit.tangents.length === 0) Object.assign(limit, {holds: true, coefficient: this.c[at.static_coefficient], given: this.isHeld(j) ? 0 : Math.abs(this.c[at.given_normal])});
+        limit.tangents.push(k);
+      }
+    });
+    // A contact whose normal force is that of another one (a stop on which friction acts) has no limit of its own.
+    const own = limits.filter((limit, j) => limit !== null && limit.size > 0 && !(limit.holds && limit.normal < 0 && this.isHeld(j)));
+    return AdmissibleForces.leastMargin(own, found) >= AdmissibleForces.wantedMargin ? found : new AdmissibleForces(found, forcesWithoutEffect(responses), own).find();
   }
   // The sum of the terms of the acceleration of a row. A share of the largest one, of any contact, is rounding.
   observeAcceleration(row) {
@@ -168,6 +184,8 @@ class ContactForces {
     const at = this.contacts[j];
     return this.isHeld(j) ? this.c[at.normal_scale] * this.lambda[j] : Math.abs(this.c[at.given_normal]);
   }
+
+  startSlip() { return this.leastSlip * startOfSlip(this.tolerances.rtol); }
 
   // Values that count as zero, from the largest terms of the run.
   negligible() { return Math.max(1e-15, this.tolerances.atol, Math.max(1e-3 * this.tolerances.rtol, 1e-14) * this.sizes.speed); }

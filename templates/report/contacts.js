@@ -30,6 +30,7 @@ class ContactModes {
     this.y = new Float64Array(live.contact_output_count);
     this.g = this.contacts.map(() => new Float64Array(contactValues));
     this.least = this.contacts.map(() => 0);  // slip in two directions that counts
+    this.starting = this.contacts.map(() => null);  // the direction in which slip in two directions has just begun
     this.restitution = this.contacts.map(() => 0);
     this.hits = [];  // contacts of the last impacts
     this.together = [];  // contacts that the next impact closes
@@ -134,6 +135,7 @@ class ContactModes {
     let direction = this.contacts[j].phi.map((k) => -y[k]), length = Math.hypot(...direction);
     if (!(length > 0)) [direction, length] = [direction.map(() => 1), 1];
     this.move(t, x, this.rows(t, x, mode, false), (row) => (row.slipOf === j ? 2 * this.least[j] * direction[row.a] / length : 0));
+    if (this.isTwo(j)) this.starting[j] = direction.map((value) => value / length);
   }
   // Extrapolates to the time at which slip in two directions vanishes, by the midpoint rule. Returns that time, or null if the slip grows.
   stop(t, x, mode, j) {
@@ -156,21 +158,48 @@ class ContactModes {
     return t + h;
   }
 
-  // Called at each step: the slip in two directions whose direction is known.
+  // Called at each step: the slip in two directions whose direction is known. Returns whether a start of slip ended.
   update(t, x) {
-    if (!this.contacts.some((_, j) => this.isTwo(j))) return;
+    if (!this.contacts.some((_, j) => this.isTwo(j))) return false;
     const y = this.outputs(t, x, this.opened(this.mode)), {rtol, atol} = this.tolerances;
-    if (y === null) return;
+    if (y === null) return false;
+    let ended = false;
     this.contacts.forEach((contact, j) => {
       const known = contact.slopes.map((slopes) => slopes.reduce((sum, k, i) => sum + Math.abs(y[k]) * (atol + rtol * Math.abs(x[this.rates + i])), 0));
       this.least[j] = Math.max(this.negligible(), 30 * Math.max(0, ...known));
+      if (this.starting[j] === null || !hasStarted(contact.slip.map((k) => y[k]), this.starting[j], this.least[j], this.startSlip(j))) return;
+      this.starting[j] = null;
+      ended = true;
     });
+    return ended;
+  }
+  startSlip(j) { return this.least[j] * startOfSlip(this.tolerances.rtol); }
+  // Ends starts of contacts that do not slide in this mode.
+  updateStarts() { this.contacts.forEach((_, j) => { if (this.mode[j] % 3 === 0 || this.isOpen(this.mode, j)) this.starting[j] = null; }); }
+  // The state at which the right-hand side is evaluated while slip is small: x with the led slip, by the smallest change
+  // of the rates (lib/eom/hybrid/slip_start.hpp).
+  lead(t, x) {
+    if (this.starting.every((direction) => direction === null)) return x;
+    const y = this.outputs(t, x, this.opened(this.mode));
+    if (y === null) return x;
+    const led = Float64Array.from(x);
+    this.contacts.forEach((contact, j) => {
+      const w = this.starting[j] === null ? [] : contact.slip.map((k) => y[k]), speed = Math.hypot(...w);
+      if (w.length === 0 || speed >= this.startSlip(j)) return;
+      const to = ledDirection(w, this.starting[j], this.least[j], this.startSlip(j)), size = Math.max(speed, 1e-3 * this.least[j]);
+      const [a, b] = contact.slopes.map((slopes) => slopes.map((k) => y[k])), product = (p, q) => p.reduce((sum, value, i) => sum + value * q[i], 0);
+      const aa = product(a, a), ab = product(a, b), bb = product(b, b), determinant = aa * bb - ab * ab, first = size * to[0] - w[0], second = size * to[1] - w[1];
+      if (!(determinant > 1e-12 * aa * bb)) return;
+      a.forEach((value, i) => { led[this.rates + i] += (value * (bb * first - ab * second) + b[i] * (aa * second - ab * first)) / determinant; });
+    });
+    return led;
   }
 
   // The modes at a start, where contacts with open[j] are open. x changes if an impact occurs. Returns the names of contacts
   // that begin to slide or open at once.
   start(t, x, open) {
     this.mode = Int32Array.from(this.mode, (_, j) => (j < this.contacts.length && this.contacts[j].unilateral && open[j] ? 3 : 0));
+    this.starting = this.contacts.map(() => null);
     const y = this.outputs(t, x, this.opened(this.mode));
     this.restitution = this.contacts.map((contact) => (contact.restitution === null || y === null ? 0 : y[contact.restitution]));
     this.update(t, x);
@@ -184,6 +213,7 @@ class ContactModes {
       if (speed < -this.negligible()) mode = this.applyImpact(t, x, mode, j, true).mode;
     }
     this.mode = this.consistent(t, x, mode);
+    this.updateStarts();
     this.update(t, x);
     const begins = ({sticks}, j) => (this.isOpen(this.mode, j) ? !open[j] : sticks && this.mode[j] % 3 !== 0 && rests[j]);
     return this.contacts.filter(begins).map((contact) => contact.name);
@@ -217,7 +247,7 @@ class ContactModes {
   // Their values; NaN if they have none.
   values(t, x, bounds) {
     if (!this.evaluate(t, x, this.mode)) return bounds.map(() => NaN);
-    return bounds.map(({j, k, sign}) => (k === 0 && this.isTwo(j) ? this.speedOf(j) - this.least[j] : sign * this.g[j][k]));
+    return bounds.map(({j, k, sign}) => (k !== 0 || !this.isTwo(j) ? sign * this.g[j][k] : this.starting[j] !== null ? 1 : this.speedOf(j) - this.least[j]));
   }
 
   holds(j) { return this.g[j][1] >= 0 && (this.isTwo(j) || this.g[j][2] >= 0); }
@@ -333,6 +363,7 @@ class ContactModes {
     if (e > 0 && e < mostBouncy) t = this.endBounces(t, x, j, latest);
     const take = (mode, names = []) => {
       this.mode = mode;
+      this.updateStarts();
       if (e > 0) this.restitution[j] = e;
       this.update(t, x);
       return {t, names, resumes: names.length === 0 && mode.every((value, i) => value === before[i])};

@@ -209,9 +209,22 @@ class FrictionProblem {
     return size > 0 ? largest / size : 0;
   }
 
-  // Gauss-Seidel with projections onto the half line of normals and the discs of friction.
+  // Gauss-Seidel with projections; if it is slow, Newton's method (lib/eom/contacts/friction_newton.hpp).
   refine(result) {
-    const {free, kinds, laws, GFree} = this, y = free.map((row) => result.force[row]), velocity = GFree.map((row, i) => row.reduce((sum, g, k) => sum + g * y[k], this.qFree[i]));
+    let y = this.free.map((row) => result.force[row]);
+    if (!this.sweep(y, 20)) {
+      const better = this.byNewton(y);
+      if (better !== null) y = better;
+      else this.sweep(y, 20000);
+    }
+    return this.complete(y);
+  }
+
+  velocities(y) { return this.GFree.map((row, i) => row.reduce((sum, g, k) => sum + g * y[k], this.qFree[i])); }
+
+  // Projections onto the half line of normals and the discs of friction. Returns whether the last round changed nothing.
+  sweep(y, rounds) {
+    const {free, kinds, laws, GFree} = this, velocity = this.velocities(y);
     const set = (i, value) => {
       const change = value - y[i];
       y[i] = value;
@@ -219,7 +232,7 @@ class FrictionProblem {
       return Math.abs(change);
     };
     let size = Math.max(1e-300, ...y.map(Math.abs));
-    for (let round = 0; round < 20000; ++round) {
+    for (let round = 0; round < rounds; ++round) {
       let moved = 0;
       free.forEach((row, i) => { if (kinds[row] === "unilateral" && GFree[i][i] > 0) moved = Math.max(moved, set(i, Math.max(0, y[i] - velocity[i] / GFree[i][i]))); });
       for (const law of laws) {
@@ -230,8 +243,62 @@ class FrictionProblem {
         at.forEach((i, a) => { moved = Math.max(moved, set(i, factor * wanted[a])); });
       }
       size = Math.max(size, ...y.map(Math.abs));
-      if (moved <= 1e-13 * size) break;
+      if (moved <= 1e-13 * size) return true;
     }
-    return this.complete(y);
+    return false;
+  }
+
+  // y less its projection after a step along the velocities, and the derivatives of that (Alart and Curnier 1991).
+  defect(y) {
+    const {free, kinds, laws, GFree} = this, velocity = this.velocities(y), F = new Float64Array(y.length), J = y.map(() => new Float64Array(y.length));
+    const take = (i, response) => {
+      F[i] = velocity[i] / response;
+      J[i] = Float64Array.from(GFree[i], (g) => g / response);
+    };
+    free.forEach((row, i) => {
+      const response = GFree[i][i];
+      if (kinds[row] !== "unilateral" || !(response > 0)) return;
+      if (y[i] - velocity[i] / response > 0) take(i, response);
+      else [F[i], J[i][i]] = [y[i], 1];
+    });
+    for (const law of laws) {
+      const at = law.tangents.map((row) => free.indexOf(row)), slowest = Math.max(...at.map((i) => GFree[i][i]));
+      if (!(slowest > 0)) continue;
+      const [constant, factors] = this.limit(law), most = y.reduce((sum, value, k) => sum + value * factors[k], constant), radius = Math.max(0, most);
+      const wanted = at.map((i) => y[i] - velocity[i] / slowest), length = Math.hypot(...wanted);
+      if (length <= radius) {
+        for (const i of at) take(i, slowest);
+        continue;
+      }
+      at.forEach((i, a) => {
+        const along = wanted[a] / length;
+        F[i] = y[i] - radius * along;
+        if (most > 0) factors.forEach((factor, k) => { J[i][k] -= along * factor; });
+        at.forEach((k, b) => {
+          const turn = radius / length * ((a === b ? 1 : 0) - along * wanted[b] / length);
+          GFree[k].forEach((g, l) => { J[i][l] += turn / slowest * g; });
+          J[i][k] -= turn;
+        });
+        J[i][i] += 1;
+      });
+    }
+    return {F, J};
+  }
+
+  // The forces, or null.
+  byNewton(y) {
+    let {F, J} = this.defect(y);
+    for (let round = 0; round < 30; ++round) {
+      const size = Math.max(1e-300, ...y.map(Math.abs)), largest = Math.max(...F.map(Math.abs)), norm = Math.hypot(...F);
+      if (largest <= 1e-13 * size) return y;
+      const {x: step} = leastNorm(J, F), moved = (share) => y.map((value, i) => value - share * step[i]);
+      if (!step.every(Number.isFinite)) return null;
+      let share = 1, next = moved(1);
+      for (let k = 0; k < 12 && !(Math.hypot(...this.defect(next).F) < norm); ++k) next = moved(share /= 2);
+      const then = this.defect(next);
+      if (!(Math.hypot(...then.F) < norm)) return largest <= 1e-12 * size ? y : null;
+      [y, F, J] = [next, then.F, then.J];
+    }
+    return null;
   }
 }

@@ -171,10 +171,10 @@ class Integration {
     x.set(next);
     this.t = end;
     const moved = problem.project(end, x);
-    if (this.contacts) this.contacts.update(end, x);
+    const led = this.contacts !== null && this.contacts.update(end, x) === true;  // the direction of friction changed
     if (occurred !== null || end >= this.until) {
       this.cross(occurred, h);
-    } else if (moved) {
+    } else if (moved || led) {
       problem.rhs(end, x, k[0]);
     } else {
       k[0].set(k[6]);

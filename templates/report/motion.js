@@ -226,7 +226,11 @@ class Live {
     let contacts = null;
     const solved = () => (this.solved ? contacts : null), mode = () => (contacts && !this.solved ? contacts.mode : null), call = (name, t, x, result) => this.code[name](t, x, this.p, this.inputWith(t, x, solved()), mode(), result);
     const problem = {
-      rhs: (t, x, dx) => call("rhs", t, x, dx),
+      rhs: (t, x, dx) => {
+        const at = contacts && !this.solved ? contacts.lead(t, x) : x, code = call("rhs", t, at, dx);
+        if (at !== x) dx.set(x.subarray(this.layout.rates, this.layout.rates + this.n));  // rates are those of x
+        return code;
+      },
       project: (t, x) => this.project(t, x, contacts),
       contacts: (tolerances) => {
         contacts = this.solved ? new SolvedContacts(this, tolerances) : this.allOpen ? new ContactModes(this, tolerances) : null;

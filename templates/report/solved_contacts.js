@@ -10,7 +10,9 @@ class SolvedContacts extends ContactTransitions {
       return result;
     });
   }
-  nearOf() { return 0; }
+  // A force at its limit where a mode begins: the problem that chose the mode has decided. Admissible forces are known to
+  // the last weight of their barriers, 1e-9.
+  nearOf(j, k) { return k === 0 && this.isClosed(j) || k === 1 && this.isSticking(j) ? 1e-8 * this.sizes.force[j] : 0; }
   observe() {}
   values(t, x, bounds) {
     const u = this.live.input(t);
@@ -51,7 +53,7 @@ class SolvedContacts extends ContactTransitions {
 
   slipRows(t, x) { return this.closedRows(t, x).slips; }
 
-  // Called at each step: the slip in two directions whose direction is known.
+  // Called at each step: the slip in two directions whose direction is known. Returns whether a start of slip ended.
   update(t, x) {
     this.leastSlip = this.negligible();
     const {rtol, atol} = this.tolerances;
@@ -59,7 +61,13 @@ class SolvedContacts extends ContactTransitions {
       if (this.slips(j).length !== 2) return;
       for (const row of this.slips(j)) this.leastSlip = Math.max(this.leastSlip, 30 * row.columns.reduce((sum, i, k) => sum + Math.abs(this.c[row.first + 2 + k]) * (atol + rtol * Math.abs(x[this.rates + i])), 0));
     });
-    this.mode.forEach((state, j) => { if (state.starts && this.slipSpeed(j) > 2 * this.leastSlip) state.starts = false; });
+    let ended = false;
+    this.mode.forEach((state, j) => {
+      if (!state.starts || !hasStarted(this.slips(j).map((row) => this.rate(row)), state.direction, this.leastSlip, this.startSlip())) return;
+      state.starts = false;
+      ended = true;
+    });
+    return ended;
   }
 
   // The modes at a start, where contacts with open[j] are open. Returns the names of contacts that change at once.
@@ -99,9 +107,26 @@ class SolvedContacts extends ContactTransitions {
       if (this.chatter.add(t)) this.endBounces(j, touching, plastic);
       rest = this.stopLowBounces(t, x, touching, plastic);
     }
-    const changes = this.meet(t, x, touching, plastic, rest, hint);
+    const changes = this.meet(t, x, touching, plastic, rest, hint, hint.slips || hint.parts ? this.laterState(t, x, {j, k}) : null);
     this.update(t, x);
     return {t, names: changes.map(({j: i}) => this.contacts[i].name), resumes: false};
+  }
+  // A state after (t, x), at which a bound has crossed 0, where it is negative by more than rounding; or null.
+  laterState(t, x, {j, k}) {
+    const at = this.contacts[j], now = this.live.input(t), a = this.solve(t, x, now) ? this.accelerations(t, x, now) : null, length = Math.abs(this.live.t1 - this.live.t0);
+    if (a === null) return null;
+    for (let after = 1e-10 * length; after < 1e-3 * length; after *= 10) {
+      const later = {t: t + after, x: Float64Array.from(x)};
+      for (let i = 0; i < this.n; ++i) {
+        later.x[i] += after * x[this.rates + i];
+        later.x[this.rates + i] += after * a[i];
+      }
+      if (!this.solve(later.t, later.x, this.live.input(later.t))) return null;
+      const value = k === 1 ? this.c[at.static_coefficient] * Math.abs(this.normalForce(j)) - Math.hypot(...this.phi[j]) : (at.unilateral ? 1 : this.mode[j].sign) * this.lambda[j], beyond = -value / this.forceSize[j];
+      if (beyond > 1e-3) return null;
+      if (beyond > 1e-9) return later;
+    }
+    return null;
   }
   addTouching(t, x, touching) {
     if (!this.readRows(t, x, this.live.input(t))) return;

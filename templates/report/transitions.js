@@ -36,13 +36,13 @@ function collision({normal, tangential = 0, nn, nt = 0, tt = 0, friction = 0, re
 
 class ContactTransitions extends ContactForces {
   // Impulses of contacts that approach, then new modes. Returns the changes [{j, kind}], or sets `failure`.
-  meet(t, x, touching, plastic, rest, hint) {
+  meet(t, x, touching, plastic, rest, hint, later = null) {
     const before = this.mode, hit = [], u = this.live.input(t);
     this.mode = before.map((state) => ({...state}));
     const approaches = () => touching.some((j) => this.contacts[j].unilateral && this.rate(this.contacts[j].normal) < -this.negligible());
     let fault = null;  // a contact, or none
     if (this.readRows(t, x, u) && approaches()) fault = this.impact(t, x, u, touching, plastic, rest, hit);
-    if (fault === null) fault = this.decide(t, x, this.live.input(t), touching, hint);
+    if (fault === null) fault = this.decide(t, x, this.live.input(t), touching, hint, later);
     if (fault !== null) this.failure = fault < 0 ? "the forces of contacts have no value" : "the contact \u201c" + this.contacts[fault].name + "\u201d has no force or impulse that fits its law";
     const changes = hit.map((j) => ({j, kind: "contact"}));
     for (const j of hit) ++this.hits[j];
@@ -145,8 +145,9 @@ class ContactTransitions extends ContactForces {
     return null;
   }
 
-  // The modes of contacts whose gap speeds are not negative. Only those in `touching` can be closed.
-  decide(t, x, u, touching, hint) {
+  // The modes of contacts whose gap speeds are not negative. Only those in `touching` can be closed. `later`: the state of
+  // which the forces decide; null: (t, x), with a small acceleration towards the change.
+  decide(t, x, u, touching, hint, later) {
     if (!this.readRows(t, x, u)) return -1;
     const least = this.negligible();
     this.contacts.forEach((at, j) => {
@@ -157,19 +158,24 @@ class ContactTransitions extends ContactForces {
       }
       Object.assign(state, {mode: 0, starts: false});
       if (!at.sticks || hint.stops && hint.j === j) return;
-      const moves = this.slipSpeed(j) > (this.slips(j).length === 2 ? Math.max(least, this.leastSlip) : least);
+      // Points of one body that slides or turns to rest stop together, though their slips differ.
+      const moves = this.slipSpeed(j) > (this.slips(j).length === 2 ? (hint.stops ? 10 : 1) * Math.max(least, this.leastSlip) : least);
       if (moves) state.mode = this.slips(j).length === 1 && this.rate(this.slips(j)[0]) < 0 ? -1 : 1;
     });
+    if (later !== null) {
+      ({t, x} = later);
+      if (!this.readRows(t, x, this.live.input(t))) return -1;
+    }
     const broken = this.contacts.map((_, j) => Boolean(hint.slips) && hint.j === j);
     for (let round = 0; round <= this.contacts.length; ++round) {
-      const {fault, again} = this.settle(t, x, this.live.input(t), hint, broken);
+      const {fault, again} = this.settle(t, x, this.live.input(t), hint, broken, later === null);
       if (fault !== null || !again) return fault;
     }
     return null;
   }
 
   // One complementarity problem on accelerations. `again`: a contact begins to slide, whose coefficient changes.
-  settle(t, x, u, hint, broken) {
+  settle(t, x, u, hint, broken, favours) {
     const result = {fault: null, again: false};
     if (!this.readFree(t, x, u)) return {fault: -1, again: false};
     this.contacts.forEach((at, j) => { if (this.isHeld(j)) this.observeAcceleration(at.normal); });
@@ -186,17 +192,19 @@ class ContactTransitions extends ContactForces {
     // A small acceleration towards the change that the crossing announces: at the crossing both modes obey the law.
     let tangent = 0;
     rows.forEach(({kind, j}, i) => {
-      if (j !== hint.j) return;
+      if (j !== hint.j || !favours) return;
       const length = Math.hypot(...(hint.friction || []));
       if (kind !== "friction") q[i] += hint.parts ? announced : 0;
       else if (hint.slips && length > 0) q[i] -= announced * hint.friction[tangent++] / length;
     });
     const problem = solved(q), found = problem.solve();
     if (found === null) return {fault: rows[q.indexOf(Math.min(...q))].j, again: false};
-    const least = Math.max(1e-12 * size, this.accelerationRounding()), slides = (l) => this.isClosed(laws[l].j) && found.speed[l] > least;
+    // Forces of dependent rows are known to 1e-13, times their differences, and all forces to the residual.
+    const unknown = found.residual * Math.max(0, ...found.force.map(Math.abs)), least = Math.max(1e-12 * size, this.accelerationRounding());
+    const opens = (i) => found.velocity[i] > Math.max(1e-10 * size, this.accelerationRounding(), 10 * unknown * problem.G[i][i]), slides = (l) => this.isClosed(laws[l].j) && found.speed[l] > least;
     rows.forEach(({kind, j}, i) => {
       const separates = !(found.force[i] > 0) || found.velocity[i] > problem.G[i][i] * found.force[i];
-      if (kind === "unilateral" && separates && (found.velocity[i] > least || hint.parts && hint.j === j)) this.mode[j].mode = 2;
+      if (kind === "unilateral" && separates && (opens(i) || hint.parts && hint.j === j)) this.mode[j].mode = 2;
       if (kind === "bilateral" && found.force[i] !== 0) this.mode[j].sign = found.force[i] < 0 ? -1 : 1;
     });
     laws.forEach(({j}, l) => {

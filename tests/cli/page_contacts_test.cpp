@@ -98,6 +98,86 @@ t = [0, 2]
 initial = { x = 0, x_dot = 1, z = 0.6, phi = 0.4 }
 )toml";
 
+// A puck that a force which grows and turns sets in motion: slip in two directions.
+const char* const puck = R"toml(format = 1
+[parameters]
+mu = 0.3
+[[particle]]
+name = "P"
+mass = 1
+position = { cartesian = ["x", "y", "z"] }
+[[force]]
+gravity = "-9.81*E3"
+[[force]]
+on = "P"
+force = "3*t*E1 + sin(5*t)*E2"
+[[constraint]]
+name = "floor"
+holonomic = "z"
+holds = "unilateral"
+friction = { static = "mu", dynamic = "mu" }
+[scene.default]
+t = [0, 2]
+initial = { x = 0, y = 0, z = 0 }
+)toml";
+
+// A disc in a corner that a growing torque turns. While it sticks, the motion does not determine the forces.
+const char* const wedged = R"toml(format = 1
+[parameters]
+mu = 0.3
+[[body]]
+name = "B"
+mass = 2
+inertia = 0.01
+position = { cartesian = ["x", "y"] }
+rotation = { axis = "E3", angle = "q" }
+[[force]]
+gravity = "-9.81*E2"
+[[force]]
+on = "B"
+moment = "-0.3*t*E3"
+[[constraint]]
+name = "floor"
+sliding = { body = "B", shape = { sphere = 0.1 }, on = { point = "origin", normal = "E2" } }
+holds = "unilateral"
+friction = { static = "mu", dynamic = "mu" }
+[[constraint]]
+name = "wall"
+sliding = { body = "B", shape = { sphere = 0.1 }, on = { point = "0.1*E1", normal = "-E1" } }
+holds = "unilateral"
+friction = { static = "mu", dynamic = "mu" }
+[scene.default]
+t = [0, 3]
+initial = { q = 0, x = 0 }
+guess = { y = 0.1 }
+)toml";
+
+// A crate on two feet that a growing force pulls upwards and along. Both feet begin to slip together.
+const char* const pulled = R"toml(format = 1
+[parameters]
+mu = 0.4
+[[body]]
+name = "A"
+mass = 2
+inertia = 0.1
+position = { cartesian = ["x", "0", "z"] }
+rotation = { axis = "E2", angle = "th" }
+[[contact]]
+name = "f"
+body = "A"
+points = { l = "-0.2*A.e1 - 0.1*A.e3", r = "0.2*A.e1 - 0.1*A.e3" }
+on = "ground"
+friction = { static = "mu", dynamic = "mu" }
+[[force]]
+gravity = "-9.81*E3"
+[[force]]
+on = "A"
+force = "t*(4*E1 + 2*E3)"
+[scene.default]
+t = [0, 3]
+initial = { x = 0, z = 0.1, th = 0 }
+)toml";
+
 struct ContactCase {
   const char* model;
   std::map<std::string, double> set;
@@ -135,6 +215,9 @@ TEST_CASE(
   const std::string bar = dropped_bar;
   folder.write("dropped_bar.toml", bar);
   folder.write("energetic_bar.toml", std::string(bar).replace(bar.find("poisson"), 7, "stronge"));
+  folder.write("puck.toml", puck);
+  folder.write("wedged.toml", wedged);
+  folder.write("pulled.toml", pulled);
   const std::vector<ContactCase> list{{"bouncing_ball", {{"e", 0.7}, {"x_dot", 5}}},
                                       {"stick_slip_belt", {}},
                                       {"R16_disk_on_disk", {}},
@@ -145,7 +228,10 @@ TEST_CASE(
                                       {"rocking_block", {{"g", 8}}},
                                       {"ladder", {{"mu", 0.15}}},
                                       {"dropped_bar.toml", {{"mu", 0.5}}},
-                                      {"energetic_bar.toml", {}}};
+                                      {"energetic_bar.toml", {}},
+                                      {"puck.toml", {{"mu", 0.25}}},
+                                      {"wedged.toml", {}},
+                                      {"pulled.toml", {{"mu", 0.3}}}};
   for (const ContactCase& c : list) {
     CAPTURE(std::string(c.model));
     CAPTURE(in_json(c.set).dump());

@@ -64,8 +64,8 @@ inline std::optional<Json> page(const Folder& folder, const std::string& model,
                        ";\nconst model = (() => {" +
                        between(html, "const model = (() => {", "})();\nconst surfaceCode") + "})();\n";
   for (const char* part :
-       {"linear.js", "resets.js", "contacts.js", "friction_problem.js", "contact_forces.js", "transitions.js",
-        "solved_contacts.js", "guards.js", "integrator.js", "motion.js", "address.js"}) {
+       {"linear.js", "resets.js", "contacts.js", "friction_problem.js", "admissible_forces.js", "contact_forces.js",
+        "transitions.js", "solved_contacts.js", "guards.js", "integrator.js", "motion.js", "address.js"}) {
     std::ifstream file(source_folder() + "/templates/report/" + part);
     script.append(std::istreambuf_iterator<char>(file), {});
   }
