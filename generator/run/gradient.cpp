@@ -153,6 +153,8 @@ class GradientRun {
     if (history_.empty() || !std::holds_alternative<Piece>(history_.back())) return;
     std::get<Piece>(history_.back()).last = trajectory_.parts();
   }
+  /// A branch that got its side during a piece has it from the begin of the piece on.
+  void note_mode() { std::get<Piece>(history_.back()).mode = jumps_.equations().context.model.mode(); }
 
   eom::Result integrate(const eom::Result& from, const eom::Options& options) {
     auto& context = jumps_.equations().context;
@@ -161,9 +163,13 @@ class GradientRun {
     const auto surfaces = [&](double t, const double* x, double* g) { return context.events(t, x, g); };
     const auto observe = [&](const eom::StepView& step) {
       trajectory_.add(step);
+      jumps_.settle_branches(step.t1, step.x1.data());
+      note_mode();
       return true;
     };
     const auto cross = [&](const eom::EventPoint& point) {
+      jumps_.settle_branch(point.crossing);
+      note_mode();
       end_piece();
       std::vector<double> x = extended({point.x.begin(), point.x.end()});
       const bool changed = jumps_.cross_event({point.t, x, point.crossing, point.functions, point.simultaneous});

@@ -146,10 +146,15 @@ class VariationalRun::Run {
       return jumps_.equations().context.events(t, x, g);
     };
     const auto cross = [&](const eom::EventPoint& point) {
+      jumps_.settle_branch(point.crossing);
       return jumps_.cross_event(point) ? eom::EventAction::restart : eom::EventAction::resume;
     };
+    const auto observe = [&](const eom::StepView& step) {
+      jumps_.settle_branches(step.t1, step.x1.data());
+      return true;
+    };
     return eom::integrate_events(solver_, *this, from.t, from.x, end, options, surfaces, jumps_.watched_functions(),
-                                 cross);
+                                 cross, observe);
   }
 
   const Scene& scene_;

@@ -113,7 +113,7 @@ bool VariationalJumps::change_contact(const eom::EventPoint& point) {
   std::copy(after.begin(), after.end() - 1, point.x.begin());
   point.t = after[n_];
   restore_contacts(own_, *next);
-  own_.context.freeze_branches(point.t, after.data(), true);
+  enter_branches(point.t, after);
   watch_contacts(own_, point.functions);
   if (!rhs(point.t, after.data(), behind)) return true;
   for (std::size_t d = 0; d < directions_.size(); ++d) {

@@ -9,6 +9,7 @@
 
 #include "run/central_differences.hpp"
 #include "run/contact_changes.hpp"
+#include "run/leaving_sides.hpp"
 
 namespace eomgen::run {
 namespace {
@@ -53,6 +54,7 @@ bool VariationalJumps::start(eom::Result& total) {
     require_samples_to_stay(due);
     change_by_samples(due, total, changes_of_time([](const Direction& d) { return d.dt0; }));
   }
+  enter_branches(total.t, total.x);
   return shift(total, changes_of_time([](const Direction& d) { return -d.dt0; }));
 }
 
@@ -70,7 +72,7 @@ bool VariationalJumps::cross_kink_in_time(eom::Result& total) {
   own_.enter(++segment_);
   const std::vector<DueSample> due = due_samples(own_.problem, kink.before, kink.after);
   if (!due.empty()) change_by_samples(due, total, changes_of_time(dt));
-  own_.context.freeze_branches(total.t, total.x.data(), true);
+  enter_branches(total.t, total.x);
   return shift(total, changes_of_time([&](const Direction& d) { return -dt(d); }));
 }
 
@@ -258,13 +260,26 @@ bool VariationalJumps::reset(const eom::EventPoint& point) {
     for (std::size_t k = 0; k < n_; ++k) s_after.push_back(direction.scale * (of_state[k] + of_scene[k]));
   }
   std::copy(after.begin(), after.end(), point.x.begin());
-  own_.context.freeze_branches(t, after.data(), true);
+  enter_branches(t, after);
   if (!rhs(t, after.data(), behind)) return true;
   for (std::size_t d = 0; d < directions_.size(); ++d) {
     const double by = directions_[d].scale * times[d];
     for (std::size_t k = 0; k < n_; ++k) point.x[(d + 1) * n_ + k] = s_after[d * n_ + k] - by * behind[k];
   }
   return true;
+}
+
+/// Every kink gets the side of the motion that starts here.
+void VariationalJumps::enter_branches(double t, const std::vector<double>& x) {
+  own_.context.freeze_branches(t, x.data(), true);
+  leave_surfaces(own_, t, state_of(x), scene_.t1 - scene_.t0);
+}
+
+void VariationalJumps::settle_branch(const eom::Crossing& crossing) {
+  const eom::hybrid::EventFunctions& events = own_.context.events;
+  if (crossing.function < events.first_kink() || crossing.function >= events.first_contact()) return;
+  const std::size_t kink = crossing.function - events.first_kink();
+  if (own_.context.model.mode().kink(kink) == 0) own_.context.model.set_kink(kink, crossing.up ? -1 : 1);
 }
 
 bool VariationalJumps::cross_surface(const eom::EventPoint& point) {

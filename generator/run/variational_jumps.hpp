@@ -48,6 +48,10 @@ class VariationalJumps {
   /// At an event, the surface of a kink that depends on the state, or a change of a contact, which may move point.t and
   /// changes what is watched. False: x and s go on unchanged.
   bool cross_event(const eom::EventPoint& point);
+  /// Before cross_event(), at the surface of a kink whose branch still follows the state: it gets its side before.
+  void settle_branch(const eom::Crossing& crossing);
+  /// After a step to (t, x): branches that still follow the state get the side to which it has moved.
+  void settle_branches(double t, const double* x) { own_.context.freeze_branches(t, x, false); }
 
   /// The scenes beside that of the run along direction d, with the contacts in its modes.
   const std::vector<std::unique_ptr<VariationalEquations>>& neighbours(std::size_t d);
@@ -71,6 +75,7 @@ class VariationalJumps {
   bool cross_surface(const eom::EventPoint& point);
   bool change_contact(const eom::EventPoint& point);
   void start_contacts(const std::vector<double>& x);
+  void enter_branches(double t, const std::vector<double>& x);
   double time_change(const ValuesIn& value, double t, const std::vector<double>& x, std::size_t d);
   double time_change(std::size_t function, double t, const std::vector<double>& x, std::size_t d);
   std::vector<double> own_slopes(std::size_t d, const std::vector<double>& middle,

@@ -138,6 +138,52 @@ TEST_CASE("gradient: friction that sticks and slips") {
   compare(folder, "stick_slip_belt", "x,x_dot", "m,k,v,g", 1e-7);
 }
 
+// x'' = -4 x - s F with s = 1 or -1: a mass on a spring with a force that jumps.
+TEST_CASE("gradient: a run that starts on the surface of a jump has the branch of its motion from the start on") {
+  const Folder folder;
+  const auto run = [&](const std::string& force, const std::string& start, const std::string& end) {
+    folder.write("model.toml",
+                 "format = 1\n[parameters]\nF = 0.8\n[coordinates]\nx = {}\ny = {}\n[energy]\n"
+                 "kinetic = \"(x_dot^2 + y_dot^2)/2\"\n[[force]]\ngeneralized = { x = \"" +
+                     force + "\", y = \"2 - F*sign(y_dot - x_dot/8)\" }\n[scene.default]\ninitial = { " + start +
+                     " }\nt = [0, " + end + "]\nrtol = 1e-11\natol = 1e-12\n");
+    return document(folder, {"run", "model.toml", "--gradient", "x", "--by", "F", "--sensitivity", "F"});
+  };
+  const auto near = [](const Json& found, double exact) {
+    const Json &adjoint = found["gradients"], &forward = found["sensitivities"];
+    constexpr double of_run = 1e-9;  // rtol 1e-11 over some 30 steps
+    CHECK(std::abs(adjoint["values"]["x"]["F"].get<double>() - exact) < of_run);
+    CHECK(std::abs(forward["values"]["F"]["x"].get<double>() - exact) < of_run);
+    CHECK(adjoint["error_estimate"]["x"]["F"].get<double>() < of_run);
+    CHECK(forward["error_estimate"]["F"]["x"].get<double>() < of_run);
+  };
+  // y leaves the surface of its friction with x: two surfaces at one state.
+  const double by_force = std::sin(1) * std::sin(1) / 2;  // x = x(0) cos 2 t + .. + s F (cos 2 t - 1)/4
+  near(run("-4*x - F*sign(x_dot)", "x = 1", "1"), by_force);
+  near(run("-4*x - if(x_dot < 0, -F, F)", "x = 1", "1"), by_force);
+  near(run("-4*x - F*sign(x)", "x_dot = 1", "1"), -by_force);
+  near(run("-4*x - F*sign(x)", "x_dot = -1", "1"), by_force);
+  near(run("-4*x - F*sign(sin(3*t))", "x = 1", "1"), -by_force);
+  near(run("-4*x - F*if(t > 0, 1, -1)", "x = 1", "1"), -by_force);
+  near(run("2 - 4*x - if(x > 0, F, 0)", "x = 0", "1"), -by_force);  // it leaves x = 0 by its acceleration alone
+  // It turns at t = pi/2, x = -1 + F/2, on the same surface.
+  near(run("-4*x - F*sign(x_dot)", "x = 1", "2"), 0.75 * std::cos(4 - std::acos(-1)) - 0.25);
+}
+
+TEST_CASE("gradient: a reset that lands on the surface of a jump") {
+  const Folder folder;
+  folder.write("model.toml",
+               "format = 1\n[parameters]\nk = 10\nF = 0.6\nc = 0.4\n[coordinates]\nx = {}\n[energy]\n"
+               "kinetic = \"x_dot^2/2\"\npotential = \"k*x^2/2\"\n[[force]]\n"
+               "generalized = { x = \"c*sin(t) - F*sign(x_dot)\" }\n[[event]]\nname = \"hit\"\nwhen = \"x + 0.2\"\n"
+               "direction = \"down\"\nset = { x_dot = \"0\" }\n[scene.default]\ninitial = { x = 0.5 }\nt = [0, 1.2]\n"
+               "rtol = 1e-11\natol = 1e-12\n");
+  compare(folder, "model.toml", "x,x_dot", "k,F,c,x", 1e-8);
+  CHECK(gradients(folder, {"run", "model.toml", "--gradient", "x", "--by", "F"})["error_estimate"]["x"]["F"] < 1e-8);
+  // A larger force of friction holds the mass there.
+  CHECK(contains(expect(2, folder, {"run", "model.toml", "--set", "F=2.5", "--gradient", "x"}).err, "slides along"));
+}
+
 TEST_CASE("gradient: refusals name the cause") {
   const Folder folder;
   folder.write("model.toml", displaced_oscillator);

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/leaving_sides.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace eomgen::run {
+namespace {
+
+constexpr std::size_t most_surfaces = 6;   // at one state: all combinations of their sides are tried
+constexpr int shortest = -44, times = 38;  // powers of 2 of the span; number of the times
+
+using Values = std::vector<double>;
+
+class LeavingMotion {
+ public:
+  LeavingMotion(VariationalEquations& in, double t, Values x, double span)
+      : in_(in), t_(t), x_(std::move(x)), span_(span), rounding_(roundings()) {}
+
+  /// The kinks on whose surfaces the state lies.
+  std::vector<std::size_t> surfaces() {
+    const Values g = kinks(t_, x_);
+    std::vector<std::size_t> on;
+    for (std::size_t k = 0; k < g.size(); ++k)
+      if (std::abs(g[k]) <= rounding_[k]) on.push_back(k);
+    return on;
+  }
+
+  /// The sides of these kinks after short times, in the present branches; 0: the motion stays on the surface.
+  std::vector<int> sides(const std::vector<std::size_t>& of) {
+    std::vector<Values> rows;
+    for (int k = 0; k < times; ++k) {
+      const double h = std::ldexp(span_, shortest + k);
+      const std::optional<Values> x = step(h);
+      if (!x) break;
+      rows.push_back(kinks(t_ + h, *x));
+    }
+    std::vector<int> result;
+    for (const std::size_t kink : of) result.push_back(side(kink, rows));
+    return result;
+  }
+
+ private:
+  Values kinks(double t, const Values& x) {
+    Values g(in_.context.events.size());
+    const std::size_t count = in_.problem.code->kinks.size();
+    if (in_.context.events(t, x.data(), g.data()) != 0) return Values(count, std::nan(""));
+    const auto first = g.begin() + static_cast<std::ptrdiff_t>(in_.context.events.first_kink());
+    return {first, first + static_cast<std::ptrdiff_t>(count)};
+  }
+
+  /// Of the value of each kink: changes by a part of each component and of the time, times the rounding unit.
+  Values roundings() {
+    constexpr double part = 1e-8, units = 4;
+    const Values middle = kinks(t_, x_);
+    Values result(middle.size(), 0.0);
+    const auto add = [&](const Values& beside) {
+      for (std::size_t k = 0; k < middle.size(); ++k) {
+        const double change = std::abs(beside[k] - middle[k]);
+        if (std::isfinite(change)) result[k] += units * std::numeric_limits<double>::epsilon() * change / part;
+      }
+    };
+    add(kinks(t_ * (1 + part), x_));
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      Values beside = x_;
+      beside[i] *= 1 + part;
+      add(kinks(t_, beside));
+    }
+    return result;
+  }
+
+  /// One step of the classical method of order 4.
+  std::optional<Values> step(double h) {
+    const std::size_t n = x_.size();
+    Values sum(n, 0.0), k(n, 0.0), at(n);
+    for (const auto& [place, weight] : {std::pair{0.0, 1.0}, {0.5, 2.0}, {0.5, 2.0}, {1.0, 1.0}}) {
+      for (std::size_t i = 0; i < n; ++i) at[i] = x_[i] + place * h * k[i];
+      if (in_.context.rhs(t_ + place * h, at.data(), k.data()) != 0) return std::nullopt;
+      for (std::size_t i = 0; i < n; ++i) sum[i] += weight / 6 * k[i];
+    }
+    for (std::size_t i = 0; i < n; ++i) at[i] = x_[i] + h * sum[i];
+    return at;
+  }
+
+  /// The sign of the first values that grow as a power of the time.
+  int side(std::size_t kink, const std::vector<Values>& rows) const {
+    constexpr double slowest = 1.8, fastest = 20;  // per doubling of the time: powers 1 to 4
+    constexpr int several = 4;
+    constexpr double beyond_rounding = 16;
+    int growing = 0;
+    for (std::size_t j = 1; j < rows.size(); ++j) {
+      const double before = rows[j - 1][kink], here = rows[j][kink], ratio = here / before;
+      const bool grows = std::abs(before) > beyond_rounding * rounding_[kink] && ratio > slowest && ratio < fastest;
+      growing = grows ? growing + 1 : 0;
+      if (growing == several) return here > 0 ? 1 : -1;
+    }
+    return 0;
+  }
+
+  VariationalEquations& in_;
+  double t_;
+  Values x_;
+  double span_;
+  Values rounding_;
+};
+
+}  // namespace
+
+std::vector<std::size_t> leave_surfaces(VariationalEquations& in, double t, const std::vector<double>& x, double span) {
+  if (!in.context.kinks.any()) return {};
+  LeavingMotion motion(in, t, x, span);
+  const std::vector<std::size_t> on = motion.surfaces();
+  eom::hybrid::Model& model = in.context.model;
+  for (const std::size_t k : on) model.set_kink(k, 0);
+  if (on.empty() || on.size() > most_surfaces) return on;
+  std::optional<std::vector<int>> found;
+  bool is_unique = true;
+  for (std::size_t set = 0; set < std::size_t{1} << on.size(); ++set) {
+    const auto tried = [&](std::size_t j) { return (set >> j & 1U) != 0 ? -1 : 1; };
+    for (std::size_t j = 0; j < on.size(); ++j) model.set_kink(on[j], tried(j));
+    const std::vector<int> sides = motion.sides(on);
+    bool is_consistent = true;
+    for (std::size_t j = 0; j < on.size(); ++j)
+      is_consistent = is_consistent && (sides[j] == 0 || sides[j] == tried(j));
+    if (!is_consistent) continue;
+    is_unique = is_unique && (!found || *found == sides);
+    found = sides;
+  }
+  for (std::size_t j = 0; j < on.size(); ++j) model.set_kink(on[j], found && is_unique ? (*found)[j] : 0);
+  return on;
+}
+
+}  // namespace eomgen::run
