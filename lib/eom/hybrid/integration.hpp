@@ -190,7 +190,9 @@ inline Result Integration::integrate_segments(Result total, const Options& optio
   segment.quadratures = problem_.power && !context_.work_is_state() ? 1 : 0;
   const std::vector<Segment> all = segments(problem_);
   for (std::size_t k = 0; k < all.size(); ++k) {
+    const std::vector<std::size_t> sliding = context_.model.sliding_kinks();
     if (!cross_boundary(k > 0 ? &all[k - 1] : nullptr, all[k].end, total, event)) break;
+    report_sliding(sliding, total.t, total.x, event);
     segment.steps_before = std::min(options.max_steps, total.statistics.steps + total.statistics.rejected);
     segment.max_steps = options.max_steps - segment.steps_before;
     if (options.fixed_step > 0 && problem_.fixed_step > 0)

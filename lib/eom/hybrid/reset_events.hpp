@@ -51,6 +51,7 @@ inline EventAction Integration::reset_at_event(const EventPoint& point, const On
     if (j < problem_.events.size()) occurred.push_back(j);
   }
   std::vector<int> sides(problem_.events.size(), 0);
+  const std::vector<std::size_t> sliding = context_.model.sliding_kinks();
   resets_.crossed(sides, resets_.event_values(point.t, point.x.data()));
   for (const std::size_t j : occurred) sides[j] = 0;
   const Resets::Changes made = resets_.occur(occurred, sides, point.t, point.x, event);
@@ -59,6 +60,7 @@ inline EventAction Integration::reset_at_event(const EventPoint& point, const On
   if (made.stopped || made.failed) return EventAction::stop;
   if (!made.changed) return EventAction::resume;
   context_.freeze_branches(point.t, point.x.data(), true);
+  report_sliding(sliding, point.t, point.x, event);
   slow_slip_.set_switch_due(slow_slip_.is_switch_due() || slow_slip_.must_switch(point.t, point.x.data()));
   return slow_slip_.is_switch_due() ? EventAction::stop : EventAction::restart;
 }
