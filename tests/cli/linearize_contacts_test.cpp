@@ -262,3 +262,17 @@ TEST_CASE("linearize: states on the border of two modes are refused by the name 
   CHECK(contains(opening, "'left' touches without a force"));
   CHECK(contains(opening, "model.toml:"));
 }
+
+TEST_CASE("linearize: forces of contacts that are solved for are no inputs") {
+  const Folder folder;
+  const std::string text =
+      block(std::string("holds = \"unilateral\"\nrestitution = 0.5\n") + coulomb,
+            "initial = { x = 0.1, x_dot = 0.5, y = 0 }\noutputs = [\"x_ddot\"]\n", "[impacts]\nlaw = \"newton\"\n");
+  const Json found = linearised(folder, text);
+  CHECK(found["inputs"] == Json({"F"}));
+  for (const char* matrix : {"B", "D"}) {
+    for (const Json& row : found[matrix]) CHECK(row.size() == 1);
+  }
+  CHECK(entry(found, "B", 1, 0) == doctest::Approx(0.5).epsilon(1e-14));
+  CHECK_FALSE(contains(expect(0, folder, {"linearize", "model.toml"}).out, "floor.friction"));
+}

@@ -34,9 +34,12 @@ struct Answer {
     return result;
   }
   std::vector<std::string> states() const { return names(l.symmetry.chart.independent); }
+  /// Those of the model. Forces and modes of contacts are internal ones.
   std::vector<std::string> inputs() const {
     std::vector<std::string> result;
-    for (const model::Input& input : problem.derived->model.inputs) result.push_back(input.name);
+    for (const model::Input& input : problem.derived->model.inputs) {
+      if (input.source != model::Input::Source::contacts) result.push_back(input.name);
+    }
     return result;
   }
   std::vector<std::string> ignorable() const { return names(linear::ignorable_entries(l.symmetry)); }
