@@ -17,6 +17,7 @@
 #include "run/lost_rank.hpp"
 #include "run/methods.hpp"
 #include "run/trajectory.hpp"
+#include "run/variational.hpp"
 #include "run/variational_jumps.hpp"
 
 namespace eomgen::run {
@@ -46,7 +47,9 @@ class GradientRun {
  public:
   GradientRun(const RunRequest& request, const RunResult& motion, const std::string& solver,
               const GradientRequest& wanted)
-      : scene_(request.scene),
+      : request_(request),
+        motion_(motion),
+        scene_(request.scene),
         state_names_(request.state_names),
         solver_(solver),
         wanted_(wanted),
@@ -69,6 +72,8 @@ class GradientRun {
   eom::Result operator()(const eom::Options& options) {
     eom::Result end = forward(options);
     if (end.outcome != eom::Outcome::done) return end;
+    // The directions alone tell whether they lead off the surface of a jump.
+    if (jumps_.is_on_jump()) VariationalRun(request_, motion_, solver_, wanted_.directions)(options);
     const std::vector<double> extended = end.x;
     end.x.resize(n_);
     for (const std::string& output : wanted_.outputs) {
@@ -339,6 +344,8 @@ class GradientRun {
     return code == 0 || call(nullptr) == 0 ? 0 : code;
   }
 
+  const RunRequest& request_;
+  const RunResult& motion_;
   const Scene& scene_;
   const std::vector<std::string>& state_names_;
   const std::string& solver_;

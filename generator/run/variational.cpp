@@ -56,7 +56,8 @@ class VariationalRun::Run {
   // The right-hand side of x and s. dx may alias x: x is read before dx is written.
   int operator()(double t, const double* x, double* dx) {
     auto& context = jumps_.equations().context;
-    if (context.solved_contacts) return differences(t, x, dx);
+    const eom::hybrid::Code& code = *jumps_.equations().problem.code;
+    if (context.solved_contacts || code.jac == nullptr || code.jac_p == nullptr) return differences(t, x, dx);
     eom::hybrid::Model& model = context.model;
     const double* u = model.inputs(t);
     std::copy(u, u + u_.size(), u_.begin());

@@ -113,7 +113,9 @@ bool VariationalJumps::change_contact(const eom::EventPoint& point) {
   std::copy(after.begin(), after.end() - 1, point.x.begin());
   point.t = after[n_];
   restore_contacts(own_, *next);
-  enter_branches(point.t, after);
+  std::vector<Change> changes;
+  for (const std::vector<double>& slope : slopes_after) changes.push_back({state_of(slope), slope[n_]});
+  enter_branches(point.t, after, changes);
   watch_contacts(own_, point.functions);
   if (!rhs(point.t, after.data(), behind)) return true;
   for (std::size_t d = 0; d < directions_.size(); ++d) {

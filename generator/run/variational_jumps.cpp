@@ -16,8 +16,6 @@ namespace {
 
 using eom::hybrid::Breakpoint;
 
-constexpr double continuous = 1e-10;  // of f: a smaller jump is rounding
-
 }  // namespace
 
 VariationalJumps::VariationalJumps(const RunRequest& request, const RunResult& motion, const std::string& solver,
@@ -45,6 +43,7 @@ std::vector<eom::EventFunction> VariationalJumps::watched_functions() {
 
 bool VariationalJumps::start(eom::Result& total) {
   segment_ = 0;
+  is_on_jump_ = false;
   own_.context.kinks.start();
   start_contacts(total.x);
   own_.enter(segment_);
@@ -54,7 +53,15 @@ bool VariationalJumps::start(eom::Result& total) {
     require_samples_to_stay(due);
     change_by_samples(due, total, changes_of_time([](const Direction& d) { return d.dt0; }));
   }
-  enter_branches(total.t, total.x);
+  std::vector<Change> changes = changes_at(total.x, [](const Direction& d) { return d.dt0; });
+  if (has_unit_vectors()) {  // each direction is a sum of them, and none of them is wanted
+    for (std::size_t d = n_; d < directions_.size(); ++d) {
+      for (std::size_t k = 0; k < n_ * n_; ++k)
+        changes[d].dx[k % n_] += changes[k / n_].dx[k % n_] * directions_[d].dx[k / n_];
+    }
+    for (std::size_t i = 0; i < n_; ++i) changes[i].dx.assign(n_, 0.0);
+  }
+  enter_branches(total.t, total.x, changes);
   return shift(total, changes_of_time([](const Direction& d) { return -d.dt0; }));
 }
 
@@ -72,7 +79,7 @@ bool VariationalJumps::cross_kink_in_time(eom::Result& total) {
   own_.enter(++segment_);
   const std::vector<DueSample> due = due_samples(own_.problem, kink.before, kink.after);
   if (!due.empty()) change_by_samples(due, total, changes_of_time(dt));
-  enter_branches(total.t, total.x);
+  enter_branches(total.t, total.x, changes_at(total.x, dt));
   return shift(total, changes_of_time([&](const Direction& d) { return -dt(d); }));
 }
 
@@ -260,46 +267,18 @@ bool VariationalJumps::reset(const eom::EventPoint& point) {
     for (std::size_t k = 0; k < n_; ++k) s_after.push_back(direction.scale * (of_state[k] + of_scene[k]));
   }
   std::copy(after.begin(), after.end(), point.x.begin());
-  enter_branches(t, after);
+  std::vector<Change> changes;
+  for (std::size_t d = 0; d < directions_.size(); ++d) {
+    const auto s = s_after.begin() + static_cast<std::ptrdiff_t>(d * n_);
+    changes.push_back({{s, s + static_cast<std::ptrdiff_t>(n_)}, times[d]});
+    for (double& value : changes.back().dx) value /= directions_[d].scale;
+  }
+  enter_branches(t, after, changes);
   if (!rhs(t, after.data(), behind)) return true;
   for (std::size_t d = 0; d < directions_.size(); ++d) {
     const double by = directions_[d].scale * times[d];
     for (std::size_t k = 0; k < n_; ++k) point.x[(d + 1) * n_ + k] = s_after[d * n_ + k] - by * behind[k];
   }
-  return true;
-}
-
-/// Every kink gets the side of the motion that starts here.
-void VariationalJumps::enter_branches(double t, const std::vector<double>& x) {
-  own_.context.freeze_branches(t, x.data(), true);
-  leave_surfaces(own_, t, state_of(x), scene_.t1 - scene_.t0);
-}
-
-void VariationalJumps::settle_branch(const eom::Crossing& crossing) {
-  const eom::hybrid::EventFunctions& events = own_.context.events;
-  if (crossing.function < events.first_kink() || crossing.function >= events.first_contact()) return;
-  const std::size_t kink = crossing.function - events.first_kink();
-  if (own_.context.model.mode().kink(kink) == 0) own_.context.model.set_kink(kink, crossing.up ? -1 : 1);
-}
-
-bool VariationalJumps::cross_surface(const eom::EventPoint& point) {
-  auto& context = own_.context;
-  std::vector<double> before(n_), after(n_);
-  const bool known = rhs(point.t, point.x.data(), before);
-  const std::vector<double> x(point.x.begin(), point.x.end());
-  const eom::ModeArray mode = context.model.mode();
-  context.kinks.flip_branch(point.t, point.crossing.function - context.events.first_kink(), point.crossing.up);
-  const eom::ModeArray flipped = context.model.mode();
-  if (!known || !rhs(point.t, point.x.data(), after)) return true;  // the integration reports it
-  double jump = 0;
-  for (std::size_t i = 0; i < n_; ++i) jump = std::max(jump, std::abs(before[i] - after[i]));
-  if (jump <= continuous * largest_magnitude(before)) return false;
-  for (std::size_t d = 0; d < directions_.size(); ++d) {
-    context.model.set_mode(mode);
-    const double by = directions_[d].scale * time_change(point.crossing.function, point.t, x, d);
-    for (std::size_t i = 0; i < n_; ++i) point.x[(d + 1) * n_ + i] += by * (before[i] - after[i]);
-  }
-  context.model.set_mode(flipped);
   return true;
 }
 

@@ -13,6 +13,7 @@
 
 #include "run/direction.hpp"
 #include "run/directional_derivative.hpp"
+#include "run/leaving_sides.hpp"
 #include "run/runner.hpp"
 #include "run/variational_equations.hpp"
 
@@ -53,6 +54,10 @@ class VariationalJumps {
   /// After a step to (t, x): branches that still follow the state get the side to which it has moved.
   void settle_branches(double t, const double* x) { own_.context.freeze_branches(t, x, false); }
 
+  /// Whether the state lay on the surface of a jump, off which changes of the state alone lead: derivatives exist if
+  /// the directions that are wanted do not.
+  bool is_on_jump() const { return is_on_jump_; }
+
   /// The scenes beside that of the run along direction d, with the contacts in its modes.
   const std::vector<std::unique_ptr<VariationalEquations>>& neighbours(std::size_t d);
   /// A scene beside that of the run, in the segment and the mode of the run.
@@ -75,7 +80,16 @@ class VariationalJumps {
   bool cross_surface(const eom::EventPoint& point);
   bool change_contact(const eom::EventPoint& point);
   void start_contacts(const std::vector<double>& x);
-  void enter_branches(double t, const std::vector<double>& x);
+  /// A change of the state and of the time at which it is reached, without scale.
+  struct Change {
+    std::vector<double> dx;
+    double dt;
+  };
+  void enter_branches(double t, const std::vector<double>& x, const std::vector<Change>& changes);
+  /// Whether the first directions are changes of each state alone, and the others start from no change.
+  bool has_unit_vectors() const { return !directions_.empty() && directions_.front().beside.empty(); }
+  std::vector<Change> changes_at(const std::vector<double>& x, const std::function<double(const Direction&)>& dt) const;
+  std::vector<StateBeside> states_beside(double t, const std::vector<double>& x, std::size_t d, const Change& change);
   double time_change(const ValuesIn& value, double t, const std::vector<double>& x, std::size_t d);
   double time_change(std::size_t function, double t, const std::vector<double>& x, std::size_t d);
   std::vector<double> own_slopes(std::size_t d, const std::vector<double>& middle,
@@ -89,6 +103,7 @@ class VariationalJumps {
   const std::vector<Direction>& directions_;
   VariationalEquations own_;
   std::size_t n_, segment_ = 0;
+  bool is_on_jump_ = false;
   std::vector<double> f_;
   std::vector<std::vector<std::unique_ptr<VariationalEquations>>> neighbours_;  // per direction, made where needed
 };

@@ -184,6 +184,53 @@ TEST_CASE("gradient: a reset that lands on the surface of a jump") {
   CHECK(contains(expect(2, folder, {"run", "model.toml", "--set", "F=2.5", "--gradient", "x"}).err, "slides along"));
 }
 
+TEST_CASE("gradient, sensitivity: a change that leads a start off the surface of a jump is refused, as at a bend") {
+  const Folder folder;
+  const auto model = [&](const std::string& force, const std::string& start) {
+    folder.write("model.toml",
+                 "format = 1\n[parameters]\nF = 0.8\nc = 0\n[coordinates]\nx = {}\n[energy]\nkinetic = "
+                 "\"x_dot^2/2\"\n[[force]]\ngeneralized = { x = \"" +
+                     force + "\" }\n[scene.default]\ninitial = { " + start + " }\nt = [0, 1]\n");
+  };
+  const auto refused = [&](const std::string& force, const std::string& start, const std::string& by) {
+    CAPTURE(force);
+    CAPTURE(by);
+    model(force, start);
+    for (const Words& words :
+         {Words{"run", "model.toml", "--sensitivity", by}, Words{"run", "model.toml", "--gradient", "x", "--by", by}}) {
+      const std::string error = expect(2, folder, words).err;
+      CHECK(contains(error, "the state at t = 0 lies on a surface of "));
+      CHECK(contains(error, "with " + by + ": its derivatives differ between the two sides"));
+    }
+  };
+  refused("-4*x - F*sign(x)", "x_dot = 1", "x");  // a start at -h crosses x = 0, one at h does not
+  refused("-4*x - if(x_dot < 0, -F, F)", "x = 1", "x_dot");
+  refused("-4*x - F*sign(x_dot - c)", "x = 1", "c");
+  refused("2 - 4*x - if(x > 0, F, 0)", "x = 0", "x_dot");  // it returns to x = 0 from a start downwards
+  refused("-4*abs(x) - F*x_dot", "x = 0", "x");            // the motion stays where it bends
+  const auto followed = [&](const std::string& force, const std::string& start, const std::string& by) {
+    CAPTURE(force);
+    CAPTURE(by);
+    model(force, start);
+    compare(folder, "model.toml", "x,x_dot", by, 1e-6, {"--rtol", "1e-11"});
+  };
+  followed("-4*x - F*sign(x)", "x_dot = 1", "x_dot,F");
+  followed("-4*x - F*sign(x_dot - c)", "x = 1, x_dot = \"c\"", "x,c");  // the surface moves with the start
+  followed("-4*max(x, 0) - F*min(x_dot, 0)", "x_dot = 1", "x,x_dot");   // both sides have the same derivatives
+  followed("-4*x - F*abs(x_dot)*x_dot", "x = 0", "x,x_dot");
+}
+
+TEST_CASE("gradient: changes of the state that only other values make do not refuse a rest on a surface") {
+  const Folder folder;
+  folder.write("model.toml",
+               "format = 1\n[parameters]\nk = 1\nF = 0.6\nc = 0.4\n[inputs]\nu = {}\n[coordinates]\nx = {}\n[energy]\n"
+               "kinetic = \"x_dot^2/2\"\n[[force]]\ngeneralized = { x = \"u*if(x > 0, F, k) - c*x_dot\" }\n"
+               "[scene.default]\ninitial = { x = 0 }\nt = [0, 2]\ninputs = { u = \"if(t < 1, 0, -1)\" }\n");
+  compare(folder, "model.toml", "x,x_dot", "k,F,c", 1e-7, {"--rtol", "1e-11"});
+  CHECK(contains(expect(2, folder, {"run", "model.toml", "--gradient", "x", "--by", "x"}).err,
+                 "lies on a surface of if"));
+}
+
 TEST_CASE("gradient: refusals name the cause") {
   const Folder folder;
   folder.write("model.toml", displaced_oscillator);
