@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <vector>
 
 namespace eom {
 
@@ -30,6 +31,12 @@ struct Crossing {
   bool up = false;                                         // the value rises with t
   double value = std::numeric_limits<double>::infinity();  // at the crossing, before a handler changed anything;
                                                            // infinite: not known
+};
+
+/// What an integration knows of its event functions at its end, for one that continues there.
+struct EventMemory {
+  std::vector<int> sides = {};       // 0: unknown
+  std::vector<double> largest = {};  // largest values
 };
 
 }  // namespace eom

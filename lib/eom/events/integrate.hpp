@@ -44,6 +44,7 @@ struct EventPoint {
   Crossing crossing;
   std::span<EventFunction> functions;              // of all events: which are monitored from here on
   std::span<const std::size_t> simultaneous = {};  // at a breaking crossing: others that cross at the same point
+  std::span<const double> largest = {};            // values of all functions so far, at a breaking crossing
 };
 
 /// This many breaking events in a row without progress in time end the run: the solution slides along a surface.
@@ -92,7 +93,7 @@ class Run {
   /// False: the run ends at its start.
   bool begin() {
     const int code = locator_.start(total_.t, total_.x.data(), g_, t1_ >= total_.t);
-    if (sides_ != nullptr) locator_.set_unknown_sides(*sides_);
+    if (memory_ != nullptr) locator_.set_unknown_sides(memory_->sides);
     if (code == 0) return true;
     total_.outcome = outcome_of_abi_code(code);
     total_.detail = "an event function returned code " + std::to_string(code) + " at the start";
@@ -148,7 +149,7 @@ class Run {
     total_.statistics += part.statistics;
     if (lost_) return end(Outcome::step_too_small, no_progress);
     if (!cut_) {
-      if (sides_ != nullptr) *sides_ = locator_.sides();
+      if (memory_ != nullptr) *memory_ = {locator_.sides(), locator_.largest()};
       total_.outcome = part.outcome;
       total_.detail = part.detail;
       total_.t = part.t;
@@ -158,13 +159,13 @@ class Run {
     }
     --total_.statistics.steps;  // the truncated step
     const bool goes_on = handle_breaking_event(piece);
-    if (!goes_on && sides_ != nullptr) *sides_ = waiting_events(*cut_, {});
+    if (!goes_on && memory_ != nullptr) *memory_ = {waiting_events(*cut_, {}), locator_.largest()};
     cut_.reset();
     return goes_on;
   }
   const Result& total() const { return total_; }
-  /// Sides at the end of an integration that ended at the start of this one; at the end those of this one.
-  void set_sides(std::vector<int>* sides) { sides_ = sides; }
+  /// Of an integration that ended at the start of this one; at the end of this one. Null: none.
+  void set_memory(EventMemory* memory) { memory_ = memory; }
 
  private:
   void cut(const StepView& view, const Crossing& crossing) {
@@ -204,7 +205,7 @@ class Run {
         final = g_(view.t1, view.x1.data(), values_.data()) != 0 || !std::isfinite(values_[i]) || values_[i] == 0 ||
                 trial + 1 == most_corrections;
         if (!final && trial > 0 && !jumps)
-          jumps = std::abs(values_[i]) > std::max(0.5 * std::abs(value_before), jump_share * locator_.largest(i));
+          jumps = std::abs(values_[i]) > std::max(0.5 * std::abs(value_before), jump_share * locator_.largest()[i]);
         if (jumps) {
           next = located;
           final = t == located;
@@ -266,7 +267,7 @@ class Run {
     events_without_progress_ =
         progress > std::max(1e-14 * std::abs(crossing.t), 1e-11 * std::abs(h)) ? 0 : events_without_progress_ + 1;
     const std::vector<int> waiting = waiting_events(crossing, simultaneous);
-    const EventAction answer = handler_(EventPoint{total_.t, total_.x, crossing, locator_.functions(), simultaneous});
+    const EventAction answer = handler_(EventPoint{total_.t, total_.x, crossing, locator_.functions(), simultaneous, locator_.largest()});
     if (!continues) return end(Outcome::stopped_by_event, answer == EventAction::stop ? "" : "stopped by the observer");
     if (answer == EventAction::stop) return end(Outcome::stopped_by_event, "");
     if (answer == EventAction::collide) events_without_progress_ = 0;
@@ -350,7 +351,7 @@ class Run {
   std::vector<double> cut_x_;
   int events_without_progress_ = 0;
   std::optional<std::size_t> turned_back_;  // a function that has to return to the side from which it was crossed
-  std::vector<int>* sides_ = nullptr;       // set_sides()
+  EventMemory* memory_ = nullptr;           // set_memory()
   bool lost_ = false;                       // it did not: what it does there is below the rounding of its values
 };
 
@@ -359,12 +360,12 @@ class Run {
 /// integrate() with event functions. g(t, x, values) -> int writes as many values as there are `functions`;
 /// handler(EventPoint) -> EventAction. Passing events are reported before the observer receives the step that contains
 /// them. A breaking event is reported after the observer received the step that ends there, also if it ends the run.
-/// `sides` connects integrations that follow one another: a function that is zero between them crosses in the next.
+/// `memory` connects integrations that follow one another: a function that is zero between them crosses in the next.
 /// Throws what integrate() throws.
 template <class F, class G, class Handler, class Observer = NoObserver, class AfterStep = NoProjection>
 Result integrate_events(std::string_view method, F&& rhs, double t0, std::span<const double> x0, double t1,
                         const Options& options, G&& g, std::vector<EventFunction> functions, Handler&& handler,
-                        Observer&& observer = {}, AfterStep&& after_step = {}, std::vector<int>* sides = nullptr) {
+                        Observer&& observer = {}, AfterStep&& after_step = {}, EventMemory* memory = nullptr) {
   detail::check_problem(t0, x0, t1, options);
   MethodChoice choice;  // state of `auto`, which continues after an event
   Options kept = options;
@@ -372,7 +373,7 @@ Result integrate_events(std::string_view method, F&& rhs, double t0, std::span<c
   events::Run<std::remove_reference_t<F>, std::remove_reference_t<G>, std::remove_reference_t<Handler>,
               std::remove_reference_t<Observer>, std::remove_reference_t<AfterStep>>
       run(method, rhs, g, std::move(functions), t0, x0, t1, kept, handler, observer, after_step);
-  run.set_sides(sides);
+  run.set_memory(memory);
   return run.run();
 }
 

@@ -169,8 +169,8 @@ class EventLocator {
     for (std::size_t i = 0; i < std::min(before.size(), side_.size()); ++i)
       if (side_[i] == 0 && std::isfinite(values_[i])) side_[i] = before[i];
   }
-  /// The largest value of a function so far.
-  double largest(std::size_t function) const { return size_[function]; }
+  /// The largest values so far.
+  const std::vector<double>& largest() const { return size_; }
 
   /// To be called after the step was accepted in full: determines the sides of functions that had none, or had no value
   /// somewhere in the step.

@@ -114,7 +114,7 @@ class Integration {
   std::optional<MissedForce> missed_narrow_force_;
   double fixed_step_ = 0;  // of the run
   double end_time_ = 0;
-  std::vector<int> event_sides_;  // of events of the model where a segment ends; 0: unknown
+  EventMemory event_memory_;  // of events of the model where a segment ends
   bool stopped_ = false, exchange_due_ = false;
   Reason jump_;                           // a jump with undetermined consequences
   Reason reset_failed_;                   // a reset without a valid result
@@ -171,7 +171,7 @@ inline void Integration::begin(const Options& options) {
   reason_ = {};
   fixed_step_ = options.fixed_step;
   end_time_ = problem_.begin();
-  event_sides_.clear();
+  event_memory_ = {};
   slow_slip_.start(fixed_step_);
   if (context_.solved_contacts)
     context_.solved_contacts->set_tolerances(fixed_step_ > 0 ? slow_slip_rtol : options.rtol,
@@ -285,13 +285,13 @@ inline void Integration::integrate_until(double end, Options options, const Obse
                                : slow_slip_.is_active() ? Automatic::name
                                                         : problem_.solver.c_str();
     const Result part = integrate_events(method, f, total.t, total.x, is_crossing_singularity_ ? total.t + length : end,
-                                         now, g, context_.events.watched(), at, observe, after, &event_sides_);
-    event_sides_.resize(problem_.events.size());  // sides of kinks and contacts follow from their modes
+                                         now, g, context_.events.watched(), at, observe, after, &event_memory_);
+    context_.observe_kinks(event_memory_.largest);
+    event_memory_.sides.resize(problem_.events.size());  // sides of kinks and contacts follow from their modes
     if (!continue_after_event(part, begin, end, event, total)) return;
     options.initial_step = std::abs(last_step_);
     const std::size_t made = std::min(options.max_steps, part.statistics.steps + part.statistics.rejected);
-    options.max_steps -= made;
-    options.steps_before += made;
+    options.max_steps -= made, options.steps_before += made;
   }
 }
 
@@ -363,6 +363,7 @@ inline bool Integration::continue_after_event(const Result& part, double begin, 
 inline EventAction Integration::handle_event(const EventPoint& point, const OnEvent& event) {
   const std::size_t i = point.crossing.function;
   const EventFunctions& functions = context_.events;
+  context_.observe_kinks(point.largest);
   if (i >= functions.first_jump()) {
     jump_ = context_.events.jumps().cross_surface({point.t, point.x, context_.model.inputs(point.t)},
                                                   i - functions.first_jump(),
@@ -376,8 +377,7 @@ inline EventAction Integration::handle_event(const EventPoint& point, const OnEv
     const WatchedEvent& watched = problem_.events[i];
     if (!resets_.occurs(i, point.t, point.x.data())) return EventAction::resume;
     if (event) event({point.t, watched.stop ? "stop" : "custom", watched.name}, point.x);
-    stopped_ = stopped_ || watched.stop;
-    return EventAction::stop;
+    return stopped_ = stopped_ || watched.stop, EventAction::stop;
   }
   return change_side(point, i - functions.first_kink(), event);
 }

@@ -49,6 +49,11 @@ class Kinks {
     }
   }
 
+  /// largest: of the surfaces, so far.
+  void observe(const double* largest) {
+    for (std::size_t k = 0; k < size_.size(); ++k) size_[k] = std::max(size_[k], largest[k]);
+  }
+
   void flip_branch(double t, std::size_t k, bool up) {
     ++crossings_[k];
     ++in_state_;

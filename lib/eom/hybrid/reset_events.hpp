@@ -12,7 +12,7 @@ namespace eom::hybrid {
 inline bool Integration::cross_boundary(const Segment* before, double until, Result& total, const OnEvent& event) {
   const double from = before != nullptr ? before->end : problem_.t0;
   const bool watches = !problem_.events.empty() && resets_.any();
-  std::vector<int> sides = event_sides_;
+  std::vector<int> sides = event_memory_.sides;
   sides.resize(watches ? problem_.events.size() : 0);
   if (before == nullptr) context_.model.set_segment_time((total.t + until) / 2);
   if (watches) resets_.crossed(sides, resets_.event_values(total.t, total.x.data()));

@@ -105,6 +105,11 @@ struct RunContext {
     return recorded;
   }
 
+  /// largest: values of all event functions so far.
+  void observe_kinks(std::span<const double> largest) {
+    if (kinks.any() && largest.size() == events.size()) kinks.observe(largest.data() + events.first_kink());
+  }
+
   /// Freezes each kink on the side of the state. anew: whether earlier sides are discarded.
   void freeze_branches(double t, const double* x, bool anew) {
     if (!kinks.any()) return;
