@@ -1,7 +1,7 @@
 """Motions with contacts in many digits, event by event: references of contacts_beside.py, independent of eomgen.
 
 A model gives its mass matrix, forces and contacts. Between events the equations with the contacts that are closed are
-integrated by Gragg's method with extrapolation, to 1e-38. Events are roots, found by integrating again from the start
+integrated by Gragg's method with extrapolation, to 1e-46. Events are roots, found by integrating again from the start
 of a step: a gap closes, a reaction ends, slip ends, friction reaches its limit. Impacts follow Moreau's law: a normal
 speed of -e times the one before or more, and friction against the slip after the impact. States of the closed contacts
 (open, sticks, slips either way) are tried one after another until all inequalities hold.
@@ -10,10 +10,10 @@ import itertools
 
 from mpmath import cos, mp, mpf, sin
 
-mp.dps = 50
-LOCAL = mpf(10) ** -38  # error of one step
+mp.dps = 60
+LOCAL = mpf(10) ** -46  # error of one step
 ZERO = mpf(10) ** -26   # gaps, speeds and reactions below are zero at events
-REST = mpf(10) ** -18   # bounces with less speed do not bounce: what is left of an infinite sequence
+REST = mpf(10) ** -16   # bounces with less speed do not bounce: what is left of an infinite sequence
 OPEN, STICK = "open", "stick"
 
 
@@ -146,7 +146,8 @@ class Motion:
         for _ in range(100):
             new = x - f / slope if slope is not None else x - f * (x - other) / (f - f_other)
             other, f_other = x, f
-            if abs(new - x) < mpf(10) ** -40 + mpf(10) ** -28 * abs(new):
+            noise = 10 * LOCAL / abs(slope) if slope else 0  # of the gap, by the error of a step
+            if abs(new - x) < mpf(10) ** -40 + mpf(10) ** -28 * abs(new) + noise:
                 if not 0 < new <= h:
                     raise RuntimeError("root outside of its step")
                 return new
@@ -297,10 +298,10 @@ class Woodpecker:
 
 
 def slider_crank(end):
-    return Motion(SliderCrank(), [mpf(0)] * 3, [mpf(150), mpf(-75), mpf(0)]).run(end, "2e-4")
+    return Motion(SliderCrank(), [mpf(0)] * 3, [mpf(150), mpf(-75), mpf(0)]).run(end, "2e-4").q
 
 
 def woodpecker(end):
     model = Woodpecker()
     start = [mpf(0), -(model.r_M - model.r_0) / model.h_M, mpf("-0.2788")]
-    return Motion(model, start, [mpf("-0.3411"), mpf(0), mpf("-7.4583")]).run(end, "1e-3")
+    return Motion(model, start, [mpf("-0.3411"), mpf(0), mpf("-7.4583")]).run(end, "1e-3").q
