@@ -5,7 +5,7 @@ usage: bench/contacts_beside.py EOMGEN
 Needs the Python package of Siconos (Debian: python3-siconos), and ends with a message where it is not installed.
 Models: `ball_chain` after 24 impacts, `woodpecker` after the first cycle of sticking, sliding and the beak's impact,
 `slider_crank` after four impacts of two corners each, before its first infinite sequence of bounces, and at the end of
-its scene, after four such sequences. Siconos has the equations from this file, those of the slider-crank from
+its scene, after three such sequences. Siconos has the equations from this file, those of the slider-crank from
 contacts_slider_crank.c (compiled by `cc`: relations that are nonlinear in the coordinates work as compiled functions
 only). It runs Moreau's time stepping (theta 1/2) with several steps, and for the balls the event-driven scheme (LSODAR).
 Errors are the largest of coordinates at the end, in the unit of the coordinate. Reference of the balls: parabolas between
