@@ -20,9 +20,10 @@ class Chatter {
   }
 }
 
-class ContactModes {
+class ContactModes extends ContactSearch {
   // live: code, p, input(t), contacts, mode_size, event_count, layout; tolerances: {rtol, atol}
   constructor(live, tolerances) {
+    super();
     Object.assign(this, {live, tolerances, contacts: live.contacts, n: live.n, rates: live.layout.rates, failure: "", largestSlip: 0, largestGap: 0, mostRepeated: 32});
     this.mode = new Int32Array(live.mode_size);
     this.first = live.event_count - contactValues * this.contacts.length;
@@ -32,6 +33,7 @@ class ContactModes {
     this.least = this.contacts.map(() => 0);  // slip in two directions that counts
     this.starting = this.contacts.map(() => null);  // the direction in which slip in two directions has just begun
     this.restitution = this.contacts.map(() => 0);
+    this.forceSizes = this.contacts.map(() => 0);  // the largest normal forces
     this.hits = [];  // contacts of the last impacts
     this.together = [];  // contacts that the next impact closes
     this.chatter = new Chatter();
@@ -226,6 +228,7 @@ class ContactModes {
     this.contacts.forEach((contact, j) => {
       if (contact.directions > 0 && Number.isFinite(this.speedOf(j))) this.largestSlip = Math.max(this.largestSlip, this.speedOf(j));
       if (this.isOpen(mode, j)) this.largestGap = Math.max(this.largestGap, this.g[j][3]);
+      else if (Number.isFinite(this.g[j][3])) this.forceSizes[j] = Math.max(this.forceSizes[j], Math.abs(this.g[j][3]));
     });
   }
   // The functions that bound the current mode, {j, k, sign}: value k of contact j, times the sign, is positive inside.
@@ -263,12 +266,20 @@ class ContactModes {
       if (!this.evaluate(t, x, mode)) return mode;
       if (this.speedOf(j) > this.negligible()) mode = this.withEntry(mode, j, high + (!this.isTwo(j) && this.g[j][0] < 0 ? 2 : 1));
     }
-    for (let round = 0; round < 4 * count && this.evaluate(t, x, mode); ++round) {
+    // One change may require another. If this leads to no admissible mode, all modes are tried.
+    const touching = mode, before = Float64Array.from(x);
+    for (let round = 0; round < 4 * count; ++round) {
+      if (!this.evaluate(t, x, mode)) return mode;
       const next = this.improved(t, x, mode);
       if (next === mode) break;
       mode = next;
     }
-    return mode;
+    if (this.isAdmissible(t, x, touching, mode)) return mode;
+    const after = Float64Array.from(x);
+    x.set(before);
+    const found = this.searched(t, x, touching);
+    if (found === null) x.set(after);
+    return found === null ? mode : found;
   }
   improved(t, x, mode) {
     for (let j = 0; j < this.contacts.length; ++j) {

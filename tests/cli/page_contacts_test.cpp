@@ -178,6 +178,41 @@ t = [0, 3]
 initial = { x = 0, z = 0.1, th = 0 }
 )toml";
 
+// A load at rest on a rough floor that a rope lifts: sticking would need tension, so it slides first and opens later.
+const char* const lifted = R"toml(format = 1
+
+[[particle]]
+name = "L"
+mass = 0.3
+position = { cartesian = ["u", "v"] }
+
+[[particle]]
+name = "Q"
+mass = 1
+position = { cartesian = ["x", "y"] }
+
+[[force]]
+gravity = "-9.81*E2"
+
+[[force]]
+on = "Q"
+force = "16*E2 - 3*x_dot*E1"
+
+[[constraint]]
+name = "rope"
+holonomic = "1 - norm(L - Q)"
+
+[[constraint]]
+name = "floor"
+holonomic = "v"
+holds = "unilateral"
+friction = { static = 0.5, dynamic = 0.5 }
+
+[scene.default]
+t = [0, 1]
+initial = { u = 0.6, v = 0, x = 0, y = 0.8 }
+)toml";
+
 struct ContactCase {
   const char* model;
   std::map<std::string, double> set;
@@ -218,6 +253,7 @@ TEST_CASE(
   folder.write("puck.toml", puck);
   folder.write("wedged.toml", wedged);
   folder.write("pulled.toml", pulled);
+  folder.write("lifted.toml", lifted);
   const std::vector<ContactCase> list{{"bouncing_ball", {{"e", 0.7}, {"x_dot", 5}}},
                                       {"stick_slip_belt", {}},
                                       {"R16_disk_on_disk", {}},
@@ -231,7 +267,8 @@ TEST_CASE(
                                       {"energetic_bar.toml", {}},
                                       {"puck.toml", {{"mu", 0.25}}},
                                       {"wedged.toml", {}},
-                                      {"pulled.toml", {{"mu", 0.3}}}};
+                                      {"pulled.toml", {{"mu", 0.3}}},
+                                      {"lifted.toml", {}}};
   for (const ContactCase& c : list) {
     CAPTURE(std::string(c.model));
     CAPTURE(in_json(c.set).dump());

@@ -63,9 +63,9 @@ inline std::optional<Json> page(const Folder& folder, const std::string& model,
   std::string script = "\"use strict\";\nconst DATA = " + Json(between(html, "id=\"motion\">", "</script>")).dump() +
                        ";\nconst model = (() => {" +
                        between(html, "const model = (() => {", "})();\nconst surfaceCode") + "})();\n";
-  for (const char* part :
-       {"linear.js", "resets.js", "contacts.js", "friction_problem.js", "admissible_forces.js", "contact_forces.js",
-        "transitions.js", "solved_contacts.js", "guards.js", "integrator.js", "motion.js", "address.js"}) {
+  for (const char* part : {"linear.js", "resets.js", "contact_search.js", "contacts.js", "friction_problem.js",
+                           "admissible_forces.js", "contact_forces.js", "transitions.js", "solved_contacts.js",
+                           "guards.js", "integrator.js", "motion.js", "address.js"}) {
     std::ifstream file(source_folder() + "/templates/report/" + part);
     script.append(std::istreambuf_iterator<char>(file), {});
   }

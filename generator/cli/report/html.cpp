@@ -11,6 +11,7 @@
 #include "cli/report_skeletons/admissible_forces_js.hpp"
 #include "cli/report_skeletons/camera_js.hpp"
 #include "cli/report_skeletons/contact_forces_js.hpp"
+#include "cli/report_skeletons/contact_search_js.hpp"
 #include "cli/report_skeletons/contacts_js.hpp"
 #include "cli/report_skeletons/controls_js.hpp"
 #include "cli/report_skeletons/drag_js.hpp"
@@ -103,8 +104,8 @@ std::string render_page(const PageParts& parts) {
   };
   add({report::linear_js, report::resets_js});
   if (parts.has_contacts)
-    add({report::contacts_js, report::friction_problem_js, report::admissible_forces_js, report::contact_forces_js,
-         report::transitions_js, report::solved_contacts_js, report::guards_js});
+    add({report::contact_search_js, report::contacts_js, report::friction_problem_js, report::admissible_forces_js,
+         report::contact_forces_js, report::transitions_js, report::solved_contacts_js, report::guards_js});
   add({report::integrator_js, report::motion_js, report::address_js, report::shapes_js, report::camera_js,
        report::pencil_js, report::links_js, report::surfaces_js, report::scene_js, report::plots_js, report::phase_js,
        report::drag_js, report::controls_js, report::fit_js, report::results_js, report::gif_js, report::recorder_js,
