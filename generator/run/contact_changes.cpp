@@ -7,6 +7,78 @@
 #include <cmath>
 
 namespace eomgen::run {
+namespace {
+
+namespace contacts = eom::contacts;
+
+/// The equations in their branches, for given forces of contacts.
+class ContactSystem : public contacts::System {
+ public:
+  explicit ContactSystem(VariationalEquations& in) : in_(in), dx_(in.problem.states()) {}
+  std::size_t coordinates() const override { return in_.problem.n(); }
+  int accelerations(double t, const double* x, const double* u, double* qddot) override {
+    const eom::hybrid::Model& model = in_.context.model;
+    const int code = in_.problem.code->rhs(t, x, model.parameters(), u, model.mode().data(), dx_.data());
+    std::copy_n(dx_.begin() + static_cast<std::ptrdiff_t>(coordinates()), coordinates(), qddot);
+    return code;
+  }
+  int rows(double t, const double* x, const double* u, double* c) override {
+    const eom::hybrid::Model& model = in_.context.model;
+    return in_.problem.code->contact_rows(t, x, model.parameters(), u, model.mode().data(), c);
+  }
+
+ private:
+  VariationalEquations& in_;
+  std::vector<double> dx_;
+};
+
+bool begins_to_slip(const contacts::ContactState& before, const contacts::ContactState& after) {
+  return before.mode == contacts::Mode::closed &&
+         (after.mode == contacts::Mode::sliding || after.mode == contacts::Mode::sliding_back);
+}
+
+}  // namespace
+
+double ImpendingMotion::acceleration(VariationalEquations& in, double t, const std::vector<double>& x) const {
+  contacts::Set set = in.problem.code->contact_set;
+  for (std::size_t j = 0; j < set.contacts.size(); ++j) {
+    if (set.contacts[j].sticks && begins_to_slip(before.solved->states[j], after.solved->states[j]))
+      set.contacts[j].dynamic_coefficient = set.contacts[j].static_coefficient;
+  }
+  ContactSystem system(in);
+  contacts::ContactForces forces(set, system);
+  forces.states() = after.solved->states;
+  contacts::ContactForces::Vector qddot;
+  if (forces.evaluate_accelerations(t, x.data(), in.context.model.inputs_without_contacts(t), qddot) != 0)
+    return std::nan("");
+  const contacts::Mode mode = after.solved->states[contact].mode;
+  const contacts::Description& at = set.contacts[contact];
+  if (mode == contacts::Mode::open) return scale + forces.acceleration(at.normal, qddot);
+  return scale + static_cast<double>(mode) * forces.acceleration(at.slip.front(), qddot);
+}
+
+std::optional<ImpendingMotion> impending_motion(VariationalEquations& in, const eom::Crossing& crossing, double t,
+                                                const std::vector<double>& x, const ContactSnapshot& before,
+                                                const ContactSnapshot& after) {
+  if (!in.context.solved_contacts) return std::nullopt;
+  constexpr std::size_t values = eom::hybrid::SolvedContacts::values_per_contact;
+  const std::size_t which = (crossing.function - in.context.events.first_solved_contact()) % values;
+  const std::vector<contacts::ContactState>&from = before.solved->states, &to = after.solved->states;
+  std::size_t j = 0;
+  const auto begins = [&](std::size_t k) {
+    if (which == 1) return in.problem.code->contact_set.contacts[k].sticks && begins_to_slip(from[k], to[k]);
+    return which == 0 && from[k].mode != contacts::Mode::open && to[k].mode == contacts::Mode::open;
+  };
+  while (j < to.size() && !begins(j)) ++j;
+  if (j == to.size()) return std::nullopt;
+  ContactSystem system(in);
+  contacts::ContactForces forces(in.problem.code->contact_set, system);
+  forces.states() = from;
+  if (forces.solve(t, x.data(), in.context.model.inputs_without_contacts(t)) != 0 || !forces.undetermined())
+    return std::nullopt;
+  constexpr double units = 1e13;  // of the rounding of accelerations
+  return ImpendingMotion{j, before, after, units * forces.acceleration_rounding()};
+}
 
 bool ContactSnapshot::has_modes_of(const ContactSnapshot& other) const {
   if (modes && other.modes && modes->mode != other.modes->mode) return false;

@@ -48,6 +48,22 @@ std::optional<SlipBound> bound_of_slip(VariationalEquations& in, const eom::Cros
 /// The slip of a contact with two directions.
 std::array<double, 2> slip_of(VariationalEquations& in, std::size_t contact, double t, const std::vector<double>& x);
 
+/// A change of a contact whose forces the motion does not determine: slip of feet that begins at the same time, or a
+/// contact that opens. The forces are some within their laws, and no smooth functions of the state. In the new modes
+/// they are determined, and the change begins where its acceleration is 0 with static friction.
+struct ImpendingMotion {
+  std::size_t contact;
+  ContactSnapshot before, after;
+  double scale;  // of accelerations
+
+  /// The acceleration of the slip or of the gap that begins, plus the scale. NaN: it has no value.
+  double acceleration(VariationalEquations& in, double t, const std::vector<double>& x) const;
+};
+/// Nothing if the forces before the change are determined, or if it is another one.
+std::optional<ImpendingMotion> impending_motion(VariationalEquations& in, const eom::Crossing& crossing, double t,
+                                                const std::vector<double>& x, const ContactSnapshot& before,
+                                                const ContactSnapshot& after);
+
 /// The name of a contact that has bounced several times and stays closed from this change on; empty if there is none.
 std::string ended_bounces(const VariationalEquations& in, const ContactSnapshot& before, const ContactSnapshot& after);
 

@@ -16,6 +16,9 @@ constexpr double relative_difference = 1e-3;  // of the state
 /// Offsets in units of h, in the order of difference_offsets, and weights of the derivative to order 4, times h.
 constexpr std::array<std::pair<double, double>, 4> order_four{
     {{2, -1.0 / 12}, {-2, 1.0 / 12}, {1, 8.0 / 12}, {-1, -8.0 / 12}}};
+/// Weights of the derivative to order 6 from the scenes beside at h/2, h/4 and h/8, in the order of difference_offsets,
+/// times h. Scenes are as far away as their values change smoothly, and 1/m is not smooth enough for order 4.
+constexpr std::array<double, 8> order_six{0, 0, 1.0 / 45, -1.0 / 45, -40.0 / 45, 40.0 / 45, 256.0 / 45, -256.0 / 45};
 
 }  // namespace
 
@@ -89,7 +92,7 @@ class VariationalRun::Run {
     return x;
   }
 
-  // f(t, x + h s) and f(t, x, p + h dp) at the distances h and 2 h on both sides, to order 4.
+  // f(t, x + h s) to order 4 and f(t, x, p + h dp, u + h du) to order 6.
   int differences(double t, const double* x, double* dx) {
     const std::vector<double> at(x, x + n_ * (directions_.size() + 1));
     std::vector<double> state(n_), value(n_);
@@ -111,10 +114,10 @@ class VariationalRun::Run {
         if (const int code = add(jumps_.equations(), weight / h, d); code != 0) return code;
       }
       state = own;
-      const auto& beside = jumps_.neighbours(d);  // at h, -h, h/2, -h/2, ..
-      const double scale = directions_[d].scale;
-      for (std::size_t k = 0; k < order_four.size() && k < beside.size(); ++k) {
-        const double weight = order_four[k].second * 2 * scale / directions_[d].step;
+      const auto& beside = jumps_.neighbours(d, NeighbourInputs::of_same_times);
+      for (std::size_t k = 0; k < order_six.size() && k < beside.size(); ++k) {
+        const double weight = order_six[k] * directions_[d].scale / directions_[d].step;
+        if (weight == 0) continue;
         if (const int code = add(jumps_.in_segment(*beside[k]), weight, d); code != 0) return code;
       }
     }

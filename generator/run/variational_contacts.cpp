@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "run/central_differences.hpp"
 #include "run/contact_changes.hpp"
@@ -31,16 +32,12 @@ bool VariationalJumps::change_contact(const eom::EventPoint& point) {
   std::vector<double> before(n_), behind(n_);
   if (!rhs(t, own.data(), before)) return true;  // the integration reports it
   const ContactSnapshot modes = save_contacts(own_);
-  std::vector<double> times;
   const std::optional<SlipBound> slip = bound_of_slip(own_, point.crossing, t, own);
   // The component along the last slip is smooth; its magnitude is not.
   const auto along = [&](VariationalEquations& in, double at, const std::vector<double>& state) -> std::vector<double> {
     const std::array<double, 2> w = slip_of(in, slip->contact, at, state);
     return {(w[0] * slip->along[0] + w[1] * slip->along[1]) / std::hypot(slip->along[0], slip->along[1])};
   };
-  for (std::size_t d = 0; d < directions_.size(); ++d)
-    times.push_back(slip && slip->ends ? time_change(along, t, x, d) : time_change(point.crossing.function, t, x, d));
-  restore_contacts(own_, modes);  // slip speeds beside the motion are not observed ones
   std::optional<ContactSnapshot> next;
   bool same = true;
   std::string bounces;  // the contact whose sequence of bounces ends here, or beside the motion
@@ -49,11 +46,12 @@ bool VariationalJumps::change_contact(const eom::EventPoint& point) {
     change_contacts(in, point.crossing, at, state);
     const ContactSnapshot now = save_contacts(in);
     if (!next) next = now;
-    same = same && now.has_modes_of(*next);
     if (bounces.empty()) bounces = ended_bounces(in, modes, now);
     restore_contacts(in, modes);
     state.push_back(at);
-    return state;
+    if (now.has_modes_of(*next)) return state;
+    same = false;  // far from the motion, or at any distance
+    return std::vector<double>(state.size(), std::nan(""));
   };
   std::vector<double> after = changed(own_, t, own);
   double jump = std::abs(after[n_] - t);
@@ -63,6 +61,18 @@ bool VariationalJumps::change_contact(const eom::EventPoint& point) {
     watch_contacts(own_, point.functions);
     return false;
   }
+  std::vector<double> times;
+  const std::optional<ImpendingMotion> impending = impending_motion(own_, point.crossing, t, own, modes, *next);
+  const auto begins = [&](VariationalEquations& in, double at, const std::vector<double>& state) {
+    return std::vector<double>{impending->acceleration(in, at, state)};
+  };
+  const bool by_input = begins_by_jump(point.crossing.function, t, own, before);
+  for (std::size_t d = 0; d < directions_.size(); ++d)
+    times.push_back(by_input             ? directions_[d].dt.empty() ? 0 : directions_[d].dt[segment_ - 1]
+                                : slip && slip->ends ? time_change(along, t, x, d)
+                    : impending          ? time_change(begins, t, x, d)
+                                         : time_change(point.crossing.function, t, x, d));
+  restore_contacts(own_, modes);  // slip speeds beside the motion are not observed ones
   // Slip of two directions begins and ends at its least speed. In the limit of none, velocities are projected onto the
   // rows of the contacts in their new modes.
   const auto projected = [&](VariationalEquations& in, double at, std::vector<double> state) {
@@ -78,8 +88,14 @@ bool VariationalJumps::change_contact(const eom::EventPoint& point) {
     state.push_back(at);
     return state;
   };
+  // Rates that an impact makes 0 have the rounding of those before it.
+  double largest_rate = 0;
+  for (std::size_t k = own_.problem.n(); k < 2 * own_.problem.n(); ++k)
+    largest_rate = std::max(largest_rate, std::abs(own[k]));
   const auto follow = [&](VariationalEquations& in, double at, std::vector<double> state) {
-    return slip ? projected(in, at, std::move(state)) : changed(in, at, std::move(state));
+    state = slip ? projected(in, at, std::move(state)) : changed(in, at, std::move(state));
+    for (std::size_t k = in.problem.n(); k < 2 * in.problem.n(); ++k) state[k] += largest_rate;
+    return state;
   };
   if (slip) after = projected(own_, after[n_], state_of(after));
   std::vector<std::vector<double>> slopes_after;
@@ -94,6 +110,7 @@ bool VariationalJumps::change_contact(const eom::EventPoint& point) {
     const Direction& direction = directions_[d];
     const auto what = [&] {
       if (!bounces.empty()) return accumulation(bounces, t);
+      if (!same) return fmt::format("beside the motion, a contact changes to another mode at t = {}", t);
       return fmt::format("the change of a contact at t = {} does not change smoothly with {}", t, direction.name);
     };
     std::vector<std::vector<double>> beside;
@@ -101,7 +118,7 @@ bool VariationalJumps::change_contact(const eom::EventPoint& point) {
       neighbour->enter(segment_);
       beside.push_back(follow(*neighbour, t, own));
     }
-    const std::vector<double> of_scene = own_slopes(d, slip ? follow(own_, t, own) : after, beside, what);
+    const std::vector<double> of_scene = own_slopes(d, follow(own_, t, own), beside, what);
     std::vector<double> slope =
         derivative_along(scales_, t, own, times[d], s, what,
                          [&](double at, std::vector<double> state) { return follow(own_, at, std::move(state)); });
@@ -109,7 +126,10 @@ bool VariationalJumps::change_contact(const eom::EventPoint& point) {
     slopes_after.push_back(std::move(slope));
   }
   if (!same && !bounces.empty()) refuse_derivative(accumulation(bounces, t));
-  if (!same) refuse_derivative(fmt::format("beside the motion, a contact changes to another mode at t = {}", t));
+  // Changes of a state alone violate the constraints of contacts, and are small enough for their modes only below the
+  // rounding of gaps.
+  if (!same && has_unit_vectors())
+    refuse_derivative(fmt::format("beside the motion, a contact changes to another mode at t = {}", t));
   std::copy(after.begin(), after.end() - 1, point.x.begin());
   point.t = after[n_];
   restore_contacts(own_, *next);
@@ -123,6 +143,24 @@ bool VariationalJumps::change_contact(const eom::EventPoint& point) {
       point.x[(d + 1) * n_ + k] = directions_[d].scale * (slopes_after[d][k] - slopes_after[d][n_] * behind[k]);
   }
   return true;
+}
+
+/// Whether an event function is beyond zero from the start of a segment on, because an input has jumped: the event is
+/// at the time of the jump.
+bool VariationalJumps::begins_by_jump(std::size_t function, double t, const std::vector<double>& x,
+                                      const std::vector<double>& f) {
+  constexpr double units = 8, part = 1e-6;  // of the span
+  const double span = scene_.t1 - scene_.t0, step = part * span;
+  const double last_digits = units * std::numeric_limits<double>::epsilon() * std::max(std::abs(t), span);
+  if (segment_ == 0 || std::abs(t - own_.begin_of(segment_)) > last_digits) return false;
+  const auto value = [&](double at, const std::vector<double>& state) {
+    std::vector<double> g(own_.context.events.size());
+    return own_.context.events(at, state.data(), g.data()) == 0 ? g[function] : std::nan("");
+  };
+  std::vector<double> later = x;
+  for (std::size_t i = 0; i < n_; ++i) later[i] += step * f[i];
+  const double here = value(t, x);
+  return std::abs(here) > std::abs(value(t + step, later) - here);
 }
 
 /// The modes at the start, which must not begin with an impact.

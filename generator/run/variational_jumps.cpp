@@ -292,14 +292,32 @@ double VariationalJumps::time_change(std::size_t function, double t, const std::
   return time_change(value, t, x, d);
 }
 
+/// The sum of the terms of a function, by their parts from each component of the state and from the time.
+double VariationalJumps::size_of_terms(const ValuesIn& value, double t, const std::vector<double>& x) {
+  constexpr double part = 1e-6;
+  const double here = value(own_, t, x)[0];
+  double sum = std::abs(value(own_, t * (1 + part), x)[0] - here);
+  for (std::size_t i = 0; i < n_; ++i) {
+    std::vector<double> moved = x;
+    moved[i] *= 1 + part;
+    if (moved[i] != x[i]) sum += std::abs(value(own_, t, moved)[0] - here);
+  }
+  return std::isfinite(sum) ? sum / part : 0;
+}
+
 /// The same for any function of the state.
 double VariationalJumps::time_change(const ValuesIn& value, double t, const std::vector<double>& x, std::size_t d) {
   const std::vector<double> own = state_of(x);
   const auto what = [&] {
     return fmt::format("the time t = {} of an event or kink does not change smoothly with {}", t, directions_[d].name);
   };
-  const auto own_value = [&](double at, const std::vector<double>& state) { return value(own_, at, state); };
-  const double of_scene = by_scene(d, t, own, what, value)[0];
+  // The value is 0 here, and its rounding is that of its terms.
+  const double terms = size_of_terms(value, t, own);
+  const ValuesIn with_terms = [&](VariationalEquations& in, double at, const std::vector<double>& state) {
+    return std::vector<double>{value(in, at, state)[0] + terms};
+  };
+  const auto own_value = [&](double at, const std::vector<double>& state) { return with_terms(own_, at, state); };
+  const double of_scene = by_scene(d, t, own, what, with_terms)[0];
   const double of_state = derivative_along(scales_, t, own, 0, sensitivity(x, d), what, own_value)[0];
   std::vector<double> f(n_);
   if (!rhs(t, own.data(), f)) refuse_derivative(what());
@@ -314,12 +332,28 @@ VariationalEquations& VariationalJumps::in_segment(VariationalEquations& neighbo
   return neighbour;
 }
 
-const std::vector<std::unique_ptr<VariationalEquations>>& VariationalJumps::neighbours(std::size_t d) {
-  neighbours_.resize(directions_.size());
-  std::vector<std::unique_ptr<VariationalEquations>>& made = neighbours_[d];
+const std::vector<std::unique_ptr<VariationalEquations>>& VariationalJumps::neighbours(std::size_t d,
+                                                                                       NeighbourInputs inputs) {
+  const bool of_scene = inputs == NeighbourInputs::of_scene;
+  Neighbours& all = of_scene ? neighbours_ : neighbours_of_same_times_;
+  all.resize(directions_.size());
+  std::vector<std::unique_ptr<VariationalEquations>>& made = all[d];
   if (made.empty()) {
-    for (const Scene& scene : directions_[d].beside)
-      made.push_back(std::make_unique<VariationalEquations>(problem_in(scene, own_.problem), kink_times(scene)));
+    const Direction& direction = directions_[d];
+    const std::vector<double> offsets = difference_offsets(direction.step);
+    for (std::size_t k = 0; k < direction.beside.size(); ++k) {
+      const Scene& scene = direction.beside[k];
+      eom::hybrid::Problem problem = problem_in(scene, own_.problem);
+      for (std::size_t i = 0; i < scene_.inputs.size() && !of_scene; ++i) {
+        if (scene_.inputs[i].runtime_signal().expression.empty()) continue;  // a table, in its own segment
+        const Signal own = scene_.inputs[i], change = direction.du.empty() ? Signal() : direction.du[i];
+        problem.inputs[i] = {};
+        problem.inputs[i].function = [own, change, offset = offsets[k]](double t) {
+          return own(t, t) + (change.runtime_signal().expression.empty() ? 0 : offset * change(t, t));
+        };
+      }
+      made.push_back(std::make_unique<VariationalEquations>(std::move(problem), kink_times(scene)));
+    }
   }
   if (own_.context.has_contacts()) {
     const ContactSnapshot modes = save_contacts(own_);

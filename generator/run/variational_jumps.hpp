@@ -19,6 +19,10 @@
 
 namespace eomgen::run {
 
+/// Inputs of the scenes beside that of a run: their own ones, whose jumps may be at other times, or those of the run
+/// with their changes at fixed t, so that no jump lies between a time of the run and the same time beside it.
+enum class NeighbourInputs { of_scene, of_same_times };
+
 class VariationalJumps {
  public:
   /// All arguments have to outlive it. A direction without scenes beside it changes the state alone.
@@ -59,7 +63,8 @@ class VariationalJumps {
   bool is_on_jump() const { return is_on_jump_; }
 
   /// The scenes beside that of the run along direction d, with the contacts in its modes.
-  const std::vector<std::unique_ptr<VariationalEquations>>& neighbours(std::size_t d);
+  const std::vector<std::unique_ptr<VariationalEquations>>& neighbours(
+      std::size_t d, NeighbourInputs inputs = NeighbourInputs::of_scene);
   /// A scene beside that of the run, in the segment and the mode of the run.
   VariationalEquations& in_segment(VariationalEquations& neighbour);
 
@@ -79,6 +84,7 @@ class VariationalJumps {
   bool reset(const eom::EventPoint& point);
   bool cross_surface(const eom::EventPoint& point);
   bool change_contact(const eom::EventPoint& point);
+  bool begins_by_jump(std::size_t function, double t, const std::vector<double>& x, const std::vector<double>& f);
   void start_contacts(const std::vector<double>& x);
   /// A change of the state and of the time at which it is reached, without scale.
   struct Change {
@@ -90,6 +96,7 @@ class VariationalJumps {
   bool has_unit_vectors() const { return !directions_.empty() && directions_.front().beside.empty(); }
   std::vector<Change> changes_at(const std::vector<double>& x, const std::function<double(const Direction&)>& dt) const;
   std::vector<StateBeside> states_beside(double t, const std::vector<double>& x, std::size_t d, const Change& change);
+  double size_of_terms(const ValuesIn& value, double t, const std::vector<double>& x);
   double time_change(const ValuesIn& value, double t, const std::vector<double>& x, std::size_t d);
   double time_change(std::size_t function, double t, const std::vector<double>& x, std::size_t d);
   std::vector<double> own_slopes(std::size_t d, const std::vector<double>& middle,
@@ -105,7 +112,8 @@ class VariationalJumps {
   std::size_t n_, segment_ = 0;
   bool is_on_jump_ = false;
   std::vector<double> f_;
-  std::vector<std::vector<std::unique_ptr<VariationalEquations>>> neighbours_;  // per direction, made where needed
+  using Neighbours = std::vector<std::vector<std::unique_ptr<VariationalEquations>>>;
+  Neighbours neighbours_, neighbours_of_same_times_;  // per direction, made where needed
 };
 
 }  // namespace eomgen::run

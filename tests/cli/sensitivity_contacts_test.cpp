@@ -180,6 +180,76 @@ TEST_CASE("sensitivity: slip in two directions that ends and begins agrees with 
   agree(found, folder, "m", 1, {"x", "y", "x_dot", "y_dot"});
 }
 
+// The motion does not determine the forces of the feet one by one, and both begin to slip at the time of the whole.
+TEST_CASE("sensitivity: a crate on two feet that is pulled until both slip, by its closed form") {
+  const Folder folder;
+  folder.write(
+      "model.toml",
+      "format = 1\n[parameters]\nm = 20\nb = 0.8\nh = 0.5\ng = 9.81\nmu = 0.4\nc = 50\n[inputs]\nF = {}\n[[body]]\n"
+      "name = \"B\"\nmass = \"m\"\ninertia = \"m*(b^2 + h^2)/12\"\nposition = { cartesian = [\"x\", \"0\", \"z\"] }\n"
+      "rotation = { axis = \"E2\", angle = \"th\" }\n[[point]]\nname = \"hook\"\non = \"B\"\nat = [\"b/2\", 0, "
+      "\"h/4\"]\n[[contact]]\nname = \"f\"\nbody = \"B\"\npoints = { l = \"-b/2*B.e1 - h/2*B.e3\", r = "
+      "\"b/2*B.e1 - h/2*B.e3\" }\non = \"ground\"\nfriction = { static = \"mu\", dynamic = \"mu\" }\n[[force]]\n"
+      "gravity = \"-g*E3\"\n[[force]]\non = \"hook\"\nforce = \"F*(cos(pi/6)*E1 + sin(pi/6)*E3)\"\n"
+      "[scene.default]\nt = [0, 3]\ninitial = { x = 0, z = \"h/2\", th = 0 }\ninputs = { F = \"c*t\" }\n"
+      "rtol = 1e-11\natol = 1e-12\n");
+  const Json found = values_of_derivatives(folder, "mu,m,c,b");
+  // x = B (T - t)^3/(6 m) with B = c (cos a + mu sin a), T = m mu g/B.
+  const double m = 20, g = 9.81, mu = 0.4, c = 50, cosine = std::sqrt(0.75), sine = 0.5, B = c * (cosine + mu * sine),
+               T = m * mu * g / B, t = 3 - T;
+  const auto by = [&](double dB, double dm, double dT) {
+    return (dB / B - dm / m) * B * t * t * t / (6 * m) - B * t * t * dT / (2 * m);
+  };
+  constexpr double of_run = 1e-8;  // relative: rtol 1e-11, and 1e-12 of the start of slip
+  CHECK(found["mu"]["x"].get<double>() == doctest::Approx(by(c * sine, 0, T / mu - T * c * sine / B)).epsilon(of_run));
+  CHECK(found["m"]["x"].get<double>() == doctest::Approx(by(0, 1, T / m)).epsilon(of_run));
+  CHECK(found["c"]["x"].get<double>() == doctest::Approx(by(B / c, 0, -T / c)).epsilon(of_run));
+  CHECK(std::abs(found["b"]["x"].get<double>()) < of_run);
+}
+
+TEST_CASE("sensitivity: a contact that a jump of an input opens has the time of the jump") {
+  const Folder folder;
+  for (const char* law : {"", "[impacts]\nlaw = \"newton\"\n"}) {
+    CAPTURE(law);
+    folder.write("model.toml",
+                 std::string("format = 1\n[parameters]\nm = 2\ng = 9.81\ntau = 0.4\nF1 = 30\n[inputs]\nF = {}\n") +
+                     "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = [\"x\", \"y\"] }\n[[force]]\n"
+                     "gravity = \"-g*E2\"\n[[force]]\non = \"P\"\nforce = \"F*E2\"\n[[constraint]]\nname = \"floor\"\n"
+                     "holonomic = \"y\"\nholds = \"unilateral\"\nrestitution = 0.5\n" +
+                     law +
+                     "[scene.default]\nt = [0, 1]\ninitial = { x_dot = 3, y = 0 }\n"
+                     "inputs = { F = \"if(t < tau, 0, F1)\" }\nrtol = 1e-11\natol = 1e-12\n");
+    const Json found = values_of_derivatives(folder, "m,g,F1,tau");
+    const double up = 30.0 / 2 - 9.81, t = 0.6;  // y = up t^2/2
+    for (const auto& [by, exact] : {std::pair<const char*, double>{"m", -30.0 / 4 * t * t / 2},
+                                    {"g", -t * t / 2},
+                                    {"F1", t * t / 4},
+                                    {"tau", -up * t}}) {
+      const auto& shown = by;
+      CAPTURE(shown);
+      CHECK(found[by]["y"].get<double>() == doctest::Approx(exact).epsilon(1e-9));
+    }
+  }
+}
+
+// Its rates after the impact are 0 but for rounding, whatever the parameters.
+TEST_CASE("sensitivity: a car whose front wheel lifts at a jump of the force and lands flat") {
+  const Folder folder;
+  folder.write(
+      "model.toml",
+      "format = 1\n[parameters]\nm = 1200\nJ = 1500\na = 1.2\nb = 1.3\nh = 0.6\ng = 9.81\n[inputs]\nF = {}\n[[body]]\n"
+      "name = \"car\"\nmass = \"m\"\ninertia = \"J\"\nposition = { cartesian = [\"x\", \"0\", \"z\"] }\nrotation = { "
+      "axis = \"E2\", angle = \"th\" }\n[[point]]\nname = \"R\"\non = \"car\"\nat = [\"-b\", 0, \"-h\"]\n[[contact]]\n"
+      "name = \"w\"\nbody = \"car\"\npoints = { r = \"-b*car.e1 - h*car.e3\", f = \"a*car.e1 - h*car.e3\" }\non = "
+      "\"ground\"\n[[force]]\ngravity = \"-g*E3\"\n[[force]]\non = \"R\"\nforce = \"F*E1\"\n[scene.default]\nt = "
+      "[0, 1.7]\ninitial = { x = 0, z = \"h\", th = 0, x_dot = 10 }\n"
+      "inputs = { F = { t = [0, 1, 1.3], value = [0, 30000, -8000] } }\nrtol = 1e-11\natol = 1e-12\n");
+  const Json found = values_of_derivatives(folder, "m,h,a");
+  agree(found, folder, "m", 1200, {"x", "z", "x_dot", "th"});
+  agree(found, folder, "h", 0.6, {"x", "z", "x_dot", "th"});
+  agree(found, folder, "a", 1.2, {"x", "z", "x_dot", "th"});
+}
+
 TEST_CASE("sensitivity: bounces that accumulate, and solved slip in two directions, are refused by name") {
   const Folder folder;
   CHECK(contains(expect(2, folder, {"run", "bouncing_ball", "--sensitivity", "g"}).err,
