@@ -101,7 +101,9 @@ class Run {
             {stepper_.x0(), stepper_.size()},
             {stepper_.x1(), stepper_.size()},
             &stepper_,
-            &Method::interpolate};
+            &Method::interpolate,
+            stepper_.derivative0(),
+            stepper_.derivative1()};
   }
 
   /// Applies Options::step_limit. The smallest step is always accepted.

@@ -94,6 +94,7 @@ struct StepView {
   std::span<const double> x0, x1;
   const void* interpolant = nullptr;  // the stepper; only `evaluate` uses it
   void (*evaluate)(const void* interpolant, double t, double* x) = nullptr;
+  const double *derivative0 = nullptr, *derivative1 = nullptr;  // dx/dt at the ends; null: not available
 
   /// The state at t between t0 and t1 by the method's dense output. x is as long as x0.
   void interpolate(double t, std::span<double> x) const { evaluate(interpolant, t, x.data()); }

@@ -267,7 +267,8 @@ class Run {
     events_without_progress_ =
         progress > std::max(1e-14 * std::abs(crossing.t), 1e-11 * std::abs(h)) ? 0 : events_without_progress_ + 1;
     const std::vector<int> waiting = waiting_events(crossing, simultaneous);
-    const EventAction answer = handler_(EventPoint{total_.t, total_.x, crossing, locator_.functions(), simultaneous, locator_.largest()});
+    const EventAction answer =
+        handler_(EventPoint{total_.t, total_.x, crossing, locator_.functions(), simultaneous, locator_.largest()});
     if (!continues) return end(Outcome::stopped_by_event, answer == EventAction::stop ? "" : "stopped by the observer");
     if (answer == EventAction::stop) return end(Outcome::stopped_by_event, "");
     if (answer == EventAction::collide) events_without_progress_ = 0;

@@ -106,7 +106,7 @@ void transfer(Archive& archive, MethodChoice& choice) {
   changes.clear();
 }
 template <class Archive>
-void transfer(Archive& archive, hybrid::Clearance::Function& function) {
+void transfer(Archive& archive, hybrid::StepBoxes::Function& function) {
   auto& [variables, box, side, margin] = function;
   transfer(archive, variables);
   transfer(archive, box);
@@ -114,7 +114,7 @@ void transfer(Archive& archive, hybrid::Clearance::Function& function) {
   transfer(archive, margin);
 }
 template <class Archive>
-void transfer(Archive& archive, hybrid::Clearance::State& state) {
+void transfer(Archive& archive, hybrid::StepBoxes::State& state) {
   auto& [parameters, functions, last, begun, is_extended] = state;
   transfer(archive, parameters);
   transfer(archive, functions);
@@ -124,7 +124,8 @@ void transfer(Archive& archive, hybrid::Clearance::State& state) {
 }
 template <class Archive>
 void transfer(Archive& archive, hybrid::Integration::State& state) {
-  auto& [contacts, solved_contacts, charts, largest_kinks, constants, choice, taken, sliding, clearance] = state;
+  auto& [contacts, solved_contacts, charts, largest_kinks, constants, choice, taken, sliding, clearance, narrow] =
+      state;
   transfer(archive, contacts);
   transfer(archive, solved_contacts);
   transfer(archive, charts);
@@ -134,6 +135,7 @@ void transfer(Archive& archive, hybrid::Integration::State& state) {
   transfer(archive, taken);
   transfer(archive, sliding);
   transfer(archive, clearance);
+  transfer(archive, narrow);
 }
 template <class Archive>
 void transfer(Archive& archive, hybrid::ExternalSteps::State& state) {

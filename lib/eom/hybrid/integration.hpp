@@ -55,7 +55,7 @@ class Integration {
     MethodChoice choice = {};
     std::vector<std::int64_t> samples_taken = {};
     std::vector<std::size_t> sliding = {};  // kinks along whose surfaces the state slides
-    Clearance::State clearance = {};
+    StepBoxes::State clearance = {}, narrow = {};
   };
   /// The present modes.
   State save() const;
@@ -147,6 +147,7 @@ inline Result Integration::run(const Options& options, const Observer& observer,
   context_.kinks.start();
   context_.events.start();
   resets_.start();
+  narrow_.start();
   choice_ = {};
   missed_narrow_force_.reset();
   begin(options);
@@ -269,8 +270,7 @@ inline void Integration::integrate_until(double end, Options options, const Obse
     }
     return context_.model.correct_sliding(t, x);
   };
-  stalled_restarts_ = 0;
-  singularity_step_length_ = 0;
+  stalled_restarts_ = 0, singularity_step_length_ = 0;
   while (true) {
     const std::vector<std::size_t> sliding = context_.model.sliding_kinks();
     context_.freeze_branches(total.t, total.x.data(), true);

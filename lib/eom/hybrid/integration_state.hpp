@@ -17,7 +17,8 @@ inline Integration::State Integration::save() const {
               choice_,
               resets_.taken(),
               context_.model.sliding_kinks(),
-              context_.events.save()};
+              context_.events.save(),
+              narrow_.save()};
   if (context_.solved_contacts) state.solved_contacts = context_.solved_contacts->save();
   if (context_.contacts) state.contacts = context_.contacts->save();
   return state;
@@ -39,6 +40,7 @@ inline void Integration::restore(double t, const std::vector<double>& x, const S
   if (from.solved_contacts) context_.solved_contacts->restore(*from.solved_contacts);
   context_.freeze_branches(t, x.data(), true);
   context_.events.restore(from.clearance);
+  narrow_.restore(from.narrow);
   choice_ = from.choice;
   if (!from.samples_taken.empty()) resets_.set_taken(from.samples_taken);
 }

@@ -14,17 +14,25 @@
 #include <utility>
 #include <vector>
 
+#include "eom/hybrid/step_boxes.hpp"
 #include "eom/hybrid/variables.hpp"
 
 namespace eom::hybrid {
 
 class NarrowForces {
  public:
-  explicit NarrowForces(const Problem& problem) : layout_(problem.code->layout()), variables_(step_variables(problem)) {
+  explicit NarrowForces(const Problem& problem)
+      : layout_(problem.code->layout()),
+        variables_(step_variables(problem)),
+        parameters_(problem.parameters),
+        boxes_(problem.bounded.narrow.size(), layout_.size(), problem.n()) {
     const std::size_t variables = 1 + layout_.size() + problem.inputs.size();
     for (const expressions::Table& function : problem.bounded.narrow) {
       Function added{{function, problem.parameters}, has_tails(function) ? of_tails : of_values};
-      if (varies(added.code, variables)) functions_.push_back(std::move(added));
+      if (!varies(added.code, variables)) continue;
+      if (std::vector<std::size_t> own = added.code.variables(); own.back() <= layout_.size())
+        boxes_.use(functions_.size(), std::move(own));
+      functions_.push_back(std::move(added));
     }
   }
 
@@ -40,9 +48,11 @@ class NarrowForces {
     double first = 1;
     bool has_tails = false;
     hidden_.assign(layout_.size(), 0);
-    for (const Function& function : functions_) {
-      const double at = first_hidden_value(function, step, sampling).value_or(1);
-      if (at < first) first = at, has_tails = function.visible == of_tails;
+    boxes_.begin_step(step);
+    for (std::size_t i = 0; i < functions_.size(); ++i) {
+      if (shows_all_values(i, step)) continue;
+      const double at = first_hidden_value(functions_[i], step, sampling).value_or(1);
+      if (at < first) first = at, has_tails = functions_[i].visible == of_tails;
     }
     if (first < 1) return {first * h, has_tails};
     if (sampling.series && unsatisfied(step, sampling, 1, 1)) return {h / 2};
@@ -60,6 +70,11 @@ class NarrowForces {
         estimate[i - layout_.rates_begin()] += std::abs(passed_over_[i].change * t - passed_over_[i].change_times_t);
     }
   }
+
+  /// To be called at the start of a run.
+  void start() { boxes_.start(); }
+  StepBoxes::State save() const { return boxes_.save(parameters_); }
+  void restore(const StepBoxes::State& from) { boxes_.restore(from, parameters_); }
 
   /// Start of the first step since the last call for which the bounds were too wide to decide.
   std::optional<double> unresolved_from() const { return std::exchange(unresolved_from_, std::nullopt); }
@@ -108,6 +123,56 @@ class NarrowForces {
 
   static double bounded(double v) { return std::clamp(v, -everything, everything); }
 
+  /// Values that the samples of a step have shown, and those close enough to them.
+  struct Seen {
+    expressions::Interval values;
+    double visible;
+
+    bool has(double v) const {
+      const double largest = std::max(std::abs(values.low), std::abs(values.high)),
+                   room = std::max({values.width(), visible * largest, nothing});
+      return v >= values.low - room && v <= values.high + room;
+    }
+    bool has(const expressions::Interval& v) const { return has(v.low) && has(v.high); }
+  };
+
+  /// Bounds by values, and by slopes from the middle, for variables along a part of a step.
+  static expressions::Interval range(const expressions::Code& code, const std::vector<expressions::SlopedInterval>& box,
+                                     double middle) {
+    using expressions::Interval;
+    expressions::SlopedInterval range = code.range(box);
+    if (std::isfinite(range.slope.width()))
+      range.value = intersection(range.value, Interval{middle, middle} + range.slope * Interval{-0.5, 0.5});
+    return {bounded(range.value.low), bounded(range.value.high)};
+  }
+
+  /// Whether a function has no values in the step but those that its ends show. This needs no sample inside the step:
+  /// first by a box of earlier steps, on which all values are so close that each shows the others, then by the cubics
+  /// with the rates at the ends. They describe the path, as no force that a step goes over bends it.
+  bool shows_all_values(std::size_t i, const StepView& step) const {
+    constexpr int everywhere = 1;
+    if (!boxes_.is_used(i)) return false;
+    if (boxes_.contains(i, everywhere)) return true;
+    const auto& [code, visible] = functions_[i];
+    const auto show_each_other = [v = visible](const expressions::Interval& all) {
+      const double least = all.has(0) ? 0 : std::min(std::abs(all.low), std::abs(all.high));
+      return std::max(std::abs(all.low), std::abs(all.high)) <= std::max((1 + v) * least, nothing);
+    };
+    const expressions::Interval all = range(code, boxes_.step(), bounded(code.value(boxes_.middle())));
+    if (show_each_other(all)) {
+      boxes_.find(i, everywhere, code, show_each_other);  // for the next steps
+      return true;
+    }
+    const auto value = [&](double t, std::span<const double> x) {
+      place_.variables.assign(1, t);
+      place_.variables.insert(place_.variables.end(), x.begin(),
+                              x.begin() + static_cast<std::ptrdiff_t>(layout_.size()));
+      return bounded(code.value(place_.variables));
+    };
+    const double a = value(step.t0, step.x0), b = value(step.t1, step.x1);
+    return Seen{{std::min(a, b), std::max(a, b)}, visible}.has(all);
+  }
+
   /// The first point at which a function has a value outside of the samples and the equations are violated.
   std::optional<double> first_hidden_value(const Function& function, const StepView& step,
                                            const Sampling& sampling) const {
@@ -118,37 +183,28 @@ class NarrowForces {
     open[0].second.s = 1;
     for (StepPlace* at : {&open[0].first, &open[0].second}) variables_.at(step, sampling, *at);
     // Every method evaluates the end points only.
-    Interval seen =
-        expressions::hull({value(open[0].first), value(open[0].first)}, {value(open[0].second), value(open[0].second)});
-    double visible = function.visible;
+    const double at_start = value(open[0].first), at_end = value(open[0].second);
+    Seen seen{{std::min(at_start, at_end), std::max(at_start, at_end)}, function.visible};
     for (std::size_t boxes = 0; !open.empty() && boxes < most_boxes; ++boxes) {
       const auto [a, b] = std::move(open.back());
       open.pop_back();
       StepPlace m{(a.s + b.s) / 2, {}};
       variables_.at(step, sampling, m);
       const double middle = value(m), width = b.s - a.s;
-      expressions::SlopedInterval range = code.range(variables_.box(a, m, b));
-      if (std::isfinite(range.slope.width()))
-        range.value = intersection(range.value, Interval{middle, middle} + range.slope * Interval{-0.5, 0.5});
-      range.value = {bounded(range.value.low), bounded(range.value.high)};
-      const auto shown = [&](double v) {
-        const double largest = std::max(std::abs(seen.low), std::abs(seen.high)),
-                     room = std::max({seen.width(), visible * largest, nothing});
-        return v >= seen.low - room && v <= seen.high + room;
-      };
-      if (shown(range.value.low) && shown(range.value.high)) continue;
-      if (!shown(middle)) {
+      const Interval all = range(code, variables_.box(a, m, b), middle);
+      if (seen.has(all)) continue;
+      if (!seen.has(middle)) {
         if (unsatisfied(step, sampling, m.s, width)) return m.s;
-        if (width <= narrow) note_hidden(step), visible = std::min(visible, of_hidden);
+        if (width <= narrow) note_hidden(step), seen.visible = std::min(seen.visible, of_hidden);
         // The slope vanishes at the top of a feature, so its sides are tested, however steep they are.
         for (double beside = width / 4; beside > width * nearest; beside /= 4) {
           if (unsatisfied(step, sampling, m.s - beside, beside) || unsatisfied(step, sampling, m.s + beside, beside))
             return m.s - beside;
         }
-        seen = hull(seen, {middle, middle});
+        seen.values = hull(seen.values, {middle, middle});
       }
       if (width < shortest) {
-        if (!unresolved_from_ && !(shown(range.value.low) && shown(range.value.high))) unresolved_from_ = step.t0;
+        if (!unresolved_from_ && !seen.has(all)) unresolved_from_ = step.t0;
         continue;
       }
       open.emplace_back(m, b);
@@ -211,10 +267,13 @@ class NarrowForces {
   StateLayout layout_;
   StepVariables variables_;
   std::vector<Function> functions_;
+  const std::vector<double>& parameters_;
+  mutable StepBoxes boxes_;
   mutable std::optional<double> unresolved_from_;
   mutable std::vector<PassedOver> passed_over_;  // per component of the state; empty: nothing
   mutable std::vector<double> hidden_;           // in this step: the largest change per component
   mutable std::vector<double> change_;           // at the last point
+  mutable StepPlace place_;
   mutable std::vector<double> x_, before_, after_, dx_;
 };
 
