@@ -253,6 +253,27 @@ TEST_CASE("a reset at the place where a force begins leaves the force as it is")
   }
 }
 
+// Friction of 7 N by the sign of the rate, a spring of 100 N/m: each reversal takes 0.14 m, until the spring is too
+// weak.
+TEST_CASE("a count of reversals leaves dry friction as it is") {
+  for (const std::string solver : {"dop853", "dopri5", "radau5"}) {
+    for (const double rtol : {1e-6, 1e-9, 1e-11}) {
+      CAPTURE(solver);
+      CAPTURE(rtol);
+      const test::FinishedRun run = run_text(
+          "[discrete]\nn = 0\n[[event]]\nname = \"turn\"\nwhen = \"x_dot\"\nset = { n = \"n + 1\" }\n"
+          "[[force]]\ngeneralized = { x = \"-100*x - 7*sign(x_dot)\" }\n"
+          "[scene.default]\nt = [0, 3]\ninitial = { x = 1 }\nsolver = \"" +
+              solver + "\"\n",
+          rtol);
+      CHECK(run.simulation.result.outcome == eom::Outcome::done);
+      CHECK(run.final("n") == 7);
+      CHECK(std::abs(run.final("x") + 1 - 7 * 0.14) < 1e3 * rtol);  // the seventh turn is on the other side
+      CHECK(std::abs(run.final("x_dot")) < 1e-9);
+    }
+  }
+}
+
 TEST_CASE("an event whose function jumps is located at the jump, also over a value of zero") {
   const auto times = [](const std::string& when, const char* solver = "dop853") {
     const test::FinishedRun run =
