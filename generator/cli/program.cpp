@@ -32,7 +32,9 @@ int report(const Error& error) {
   print_message(error.what());
   // Messages name a page by its path in the source tree.
   if (std::string_view(error.what()).find("docs/model-format.md") != std::string_view::npos) {
-    print_message(fmt::format("  docs/model-format.md is {}\n", documentation_path("model-format.md")));
+    const std::string path = documentation_path("model-format.md");
+    print_message(path == "docs/model-format.md" ? "  `eomgen docs model-format` shows docs/model-format.md\n"
+                                                 : fmt::format("  docs/model-format.md is {}\n", path));
   }
   return error.exit_code();
 }
