@@ -82,6 +82,45 @@ holonomic = "x - sin(y)"
   CHECK(document(folder, {"verify", "follows.toml", "--points", "6"})["verdict"] == "pass");
 }
 
+// A climber moves along a ladder as a function of time: the power of that motion depends on the forces of the contacts.
+TEST_CASE("verify: a prescribed motion on a body in contact") {
+  const Folder folder;
+  folder.write("climber.toml", R"toml(format = 1
+[parameters]
+L = "5 m"
+v = "0.5 m/s"
+[functions]
+s = "v*t"
+[[body]]
+name = "ladder"
+mass = "12 kg"
+inertia = { principal = ["25 kg*m^2", "25 kg*m^2", 0] }
+position = { cartesian = ["x", "0", "z"] }
+rotation = { axis = "E2", angle = "th" }
+[[particle]]
+name = "climber"
+mass = "75 kg"
+position = "ladder + (s - L/2)*ladder.e3"
+[[contact]]
+name = "floor"
+body = "ladder"
+points = { foot = "-L/2*ladder.e3" }
+on = "ground"
+friction = { static = 0.3, dynamic = 0.3 }
+[[contact]]
+name = "wall"
+body = "ladder"
+points = { top = "L/2*ladder.e3" }
+on = { point = "0[m]*E1", normal = "-E1" }
+friction = { static = 0.3, dynamic = 0.3 }
+[impacts]
+law = "moreau"
+[[force]]
+gravity = "-9.81[m/s^2]*E3"
+)toml");
+  CHECK(document(folder, {"verify", "climber.toml", "--points", "3", "--no-compile"})["verdict"] == "pass");
+}
+
 TEST_CASE("run: shipped models with springs of 1e8 and 1e10 load their compiled code") {
   const Folder folder;
   for (const char* model : {"elastic_pendulum", "car_axis", "S4_two_particles"}) {
