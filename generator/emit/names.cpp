@@ -53,7 +53,7 @@ constexpr std::string_view runtime[] = {
     "S_ISCHR", "S_ISDIR", "S_ISREG",  // macros of headers that it includes
     "STDERR_FILENO", "STDIN_FILENO", "STDOUT_FILENO", "StepBound", "AtomicFile",
     "EventAction", "Automatic", "ChangeReason", "MethodChoice", "CompiledBatch", "CompiledBatchJacobian", "CompiledBatchSeries", "CompiledModel", "Complex", "Contact", "ContactMotion", "ContactShape", "Contacts",
-    "Crossing", "CsvWriter", "Direction", "Drift", "Eligibility", "EnsembleEnd", "EnsembleOptions", "EnsembleRhs", "EnsembleStart", "ErrorEstimate", "EstimateCost", "EventFunction", "EventLocator", "EventPoint", "Feature", "Features", "Lu",
+    "Crossing", "CsvWriter", "Direction", "Drift", "Eligibility", "EnsembleEnd", "EnsembleOptions", "EnsembleRhs", "EnsembleStart", "ErrorEstimate", "EstimateCost", "EventFunction", "EventLocator", "EventMemory", "EventPoint", "Feature", "Features", "Lu",
     "MethodChange", "MethodInfo", "Mode", "ModeArray", "ModeEntries", "ModeEvent", "ModeLayout", "ModePoint", "ModeResult", "Needs", "NoObserver", "NoProjection", "Options",
     "Outcome", "Plot", "PlotMark", "PlotSeries", "PowerBalance", "Projection", "ProjectionOptions", "ProjectionResult", "Refusal", "Registry", "Result", "Rhs",
     "Run", "StateLayout", "Statistics", "StepEnds", "StepView", "System", "Transition", "Watch", "WatchedSurface", "WithJacobian", "WithTaylor", "all_features", "open_mode", 
