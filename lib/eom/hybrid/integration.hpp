@@ -270,7 +270,8 @@ inline void Integration::integrate_until(double end, Options options, const Obse
     }
     return context_.model.correct_sliding(t, x);
   };
-  stalled_restarts_ = 0, singularity_step_length_ = 0;
+  stalled_restarts_ = 0;
+  singularity_step_length_ = 0;
   while (true) {
     const std::vector<std::size_t> sliding = context_.model.sliding_kinks();
     context_.freeze_branches(total.t, total.x.data(), true);
@@ -291,7 +292,8 @@ inline void Integration::integrate_until(double end, Options options, const Obse
     if (!continue_after_event(part, begin, end, event, total)) return;
     options.initial_step = std::abs(last_step_);
     const std::size_t made = std::min(options.max_steps, part.statistics.steps + part.statistics.rejected);
-    options.max_steps -= made, options.steps_before += made;
+    options.max_steps -= made;
+    options.steps_before += made;
   }
 }
 
@@ -360,28 +362,6 @@ inline bool Integration::continue_after_event(const Result& part, double begin, 
   return total.t != end;
 }
 
-inline EventAction Integration::handle_event(const EventPoint& point, const OnEvent& event) {
-  const std::size_t i = point.crossing.function;
-  const EventFunctions& functions = context_.events;
-  context_.observe_kinks(point.largest);
-  if (i >= functions.first_jump()) {
-    jump_ = context_.events.jumps().cross_surface({point.t, point.x, context_.model.inputs(point.t)},
-                                                  i - functions.first_jump(),
-                                                  [&](std::size_t k) { return context_.rows.is_open(k); });
-    return !jump_ ? EventAction::resume : EventAction::stop;
-  }
-  if (i >= functions.first_solved_contact()) return change_solved_contact(point, event);
-  if (i >= functions.first_contact()) return change_contact(point, event);
-  if (i < functions.first_kink()) {
-    if (resets_.any()) return reset_at_event(point, event);
-    const WatchedEvent& watched = problem_.events[i];
-    if (!resets_.occurs(i, point.t, point.x.data())) return EventAction::resume;
-    if (event) event({point.t, watched.stop ? "stop" : "custom", watched.name}, point.x);
-    return stopped_ = stopped_ || watched.stop, EventAction::stop;
-  }
-  return change_side(point, i - functions.first_kink(), event);
-}
-
 /// The longest admissible step: infinity, unless the step misses a force that is narrow in the state.
 inline double Integration::longest_step(const StepView& step) {
   if (context_.charts.second_charts() != 0) return std::numeric_limits<double>::infinity();
@@ -396,4 +376,4 @@ inline double Integration::longest_step(const StepView& step) {
 #include "eom/hybrid/contact_events.hpp"     // the members that change modes of contacts
 #include "eom/hybrid/integration_state.hpp"  // the members that save and restore
 #include "eom/hybrid/kink_events.hpp"        // the members that change sides of kinks
-#include "eom/hybrid/reset_events.hpp"       // the members that make resets
+#include "eom/hybrid/reset_events.hpp"       // the members that handle events and make resets

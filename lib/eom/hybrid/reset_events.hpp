@@ -1,11 +1,34 @@
 // SPDX-License-Identifier: MIT
-// Members of Integration that make resets: at an event, and at the boundary between two segments. Included by
-// integration.hpp.
+// Members of Integration that handle events, and that make resets: at an event, and at the boundary between two
+// segments. Included by integration.hpp.
 #pragma once
 
 #include "eom/hybrid/integration.hpp"
 
 namespace eom::hybrid {
+
+inline EventAction Integration::handle_event(const EventPoint& point, const OnEvent& event) {
+  const std::size_t i = point.crossing.function;
+  const EventFunctions& functions = context_.events;
+  context_.observe_kinks(point.largest);
+  if (i >= functions.first_jump()) {
+    jump_ = context_.events.jumps().cross_surface({point.t, point.x, context_.model.inputs(point.t)},
+                                                  i - functions.first_jump(),
+                                                  [&](std::size_t k) { return context_.rows.is_open(k); });
+    return !jump_ ? EventAction::resume : EventAction::stop;
+  }
+  if (i >= functions.first_solved_contact()) return change_solved_contact(point, event);
+  if (i >= functions.first_contact()) return change_contact(point, event);
+  if (i < functions.first_kink()) {
+    if (resets_.any()) return reset_at_event(point, event);
+    const WatchedEvent& watched = problem_.events[i];
+    if (!resets_.occurs(i, point.t, point.x.data())) return EventAction::resume;
+    if (event) event({point.t, watched.stop ? "stop" : "custom", watched.name}, point.x);
+    stopped_ = stopped_ || watched.stop;
+    return EventAction::stop;
+  }
+  return change_side(point, i - functions.first_kink(), event);
+}
 
 /// Enters the segment that ends at `until`; before: the previous one, null at the start of the run. Crosses a kink in
 /// time, takes samples, and handles the events that these cause. False: the run ends here.
