@@ -70,9 +70,6 @@ class LeavingMotion {
 
   const Values& rounding() const { return rounding_; }
 
-  /// The values of the surfaces at the start.
-  Values kinks() { return kinks(t_, x_); }
-
  private:
   static constexpr double beyond_rounding = 16;
 
