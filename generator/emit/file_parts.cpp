@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "abi/functions.hpp"
+#include "emit/array_loops.hpp"
 #include "emit/metadata.hpp"
 #include "emit/signature.hpp"
 
@@ -27,13 +28,13 @@ bool is_without_mode(const std::string& name) { return !abi::find(name)->has_inp
 
 class Parts {
  public:
-  Parts(const Program& program, const std::string& prefix, const std::string& real)
-      : program_(program), prefix_(prefix), real_(real) {}
+  Parts(const Program& program, const std::string& prefix, const Dialect& dialect)
+      : program_(program), prefix_(prefix), dialect_(dialect), real_(dialect.real) {}
 
   std::vector<FilePart> run() {
     for (const Function& function : program_.functions) {
       if (program_.charts.empty()) {
-        parts_.push_back({function.name, function_purpose(function.name), &function, false, "", ""});
+        add(function.name, function_purpose(function.name), function, false);
         continue;
       }
       in_each_chart(function.name);
@@ -58,8 +59,8 @@ class Parts {
     for (const Program* p = next(nullptr); p != nullptr; p = next(p)) {
       const Function* function = find(*p, name);
       if (function == nullptr) continue;
-      parts_.push_back({chart_name(p->in_charts) + "_" + name,
-                        fmt::format("{} in {}.", name, chart_title(program_, p->in_charts)), function, true, "", ""});
+      add(chart_name(p->in_charts) + "_" + name, fmt::format("{} in {}.", name, chart_title(program_, p->in_charts)),
+          *function, true);
     }
   }
 
@@ -141,19 +142,37 @@ class Parts {
     add("chart", function_purpose("chart"), argument_list(abi_arguments("chart"), real_), body + "  return code;\n");
   }
 
+  /// A function of the program. One with loops calls another one for its scalars.
+  void add(const std::string& name, const std::string& what, const Function& function, bool internal) {
+    if (!function.loops) {
+      parts_.push_back({name, what, &function, internal, "", ""});
+      return;
+    }
+    const std::string scalars = name + "_scalars";
+    std::vector<Argument> list = abi_arguments(function.name);
+    const std::string arguments = argument_list(list, real_);
+    std::erase_if(list, [](const Argument& argument) { return argument.kind == Argument::Kind::result; });
+    parts_.push_back(
+        {scalars, fmt::format("Scalars of {}, before its loops.", name), &function.loops->scalars, true, "", ""});
+    parts_.push_back({name, what, nullptr, internal, arguments,
+                      print_loops(*function.loops, program_.state_count(), dialect_, prefix_ + scalars, names(list))});
+  }
+
   void add(const std::string& name, const std::string& what, const std::string& arguments, const std::string& body) {
     parts_.push_back({name, what, nullptr, false, arguments, body});
   }
 
   const Program& program_;
-  std::string prefix_, real_;
+  std::string prefix_;
+  const Dialect& dialect_;
+  std::string real_;
   std::vector<FilePart> parts_;
 };
 
 }  // namespace
 
-std::vector<FilePart> file_parts(const Program& program, const std::string& prefix, const std::string& real) {
-  return Parts(program, prefix, real).run();
+std::vector<FilePart> file_parts(const Program& program, const std::string& prefix, const Dialect& dialect) {
+  return Parts(program, prefix, dialect).run();
 }
 
 std::string chart_title(const Program& program, unsigned in_charts) {

@@ -18,8 +18,8 @@ struct FilePart {
   std::string arguments, body;
 };
 
-/// `prefix`: of called functions, "NAME_". `real`: "double".
-std::vector<FilePart> file_parts(const program::Program& program, const std::string& prefix, const std::string& real);
+/// `prefix`: of called functions, "NAME_".
+std::vector<FilePart> file_parts(const program::Program& program, const std::string& prefix, const Dialect& dialect);
 
 /// The title of a chart for the banner and NAME_info: the objects that are in their second charts.
 std::string chart_title(const program::Program& program, unsigned in_charts);

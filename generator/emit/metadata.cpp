@@ -12,6 +12,7 @@
 #include "emit/start/start.hpp"
 #include "emit/text.hpp"
 #include "error.hpp"
+#include "program/array_program.hpp"
 #include "program/internal_functions.hpp"
 #include "program/kinks.hpp"
 #include "program/taylor.hpp"
@@ -92,6 +93,9 @@ std::vector<std::string> banner_lines(const program::Program& program, const Emi
   for (const program::Function& function : program.functions) {
     lines.push_back(fmt::format("{:11} {}", function.name == "rhs_prepared" ? "rhs after" : function.name,
                                 operations_text(function.operations)));
+    if (function.loops)
+      lines.push_back(fmt::format("            in C and C++: {} flops, of which {} in loops", function.loops->flops(),
+                                  function.loops->loop_operations.flops()));
   }
   if (program.taylor) {
     lines.push_back(fmt::format("taylor      {} once, {} at each order, and {} sums of products",
@@ -332,6 +336,9 @@ std::string info_json(const program::Program& program, const EmissionContext& co
     const program::Operations& o = function.operations;
     info["operations"][function.name] = {{"add", o.add},   {"mul", o.mul},   {"div", o.div},
                                          {"sqrt", o.sqrt}, {"trig", o.trig}, {"other", o.other}};
+    if (function.loops)
+      info["operations"][function.name]["loops"] = {{"flops", function.loops->flops()},
+                                                    {"in_loops", function.loops->loop_operations.flops()}};
   }
   return info.dump(-1, ' ', true, json::error_handler_t::replace);
 }

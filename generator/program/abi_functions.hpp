@@ -3,7 +3,9 @@
 // t, the state, parameters and inputs. The expressions are not optimised yet.
 #pragma once
 
+#include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -37,6 +39,11 @@ struct FunctionExpressions {
   std::vector<LabelledExpression> labels;
 };
 
+/// Optimises expressions, and schedules them.
+using MakeFunction = std::function<Function(const FunctionExpressions&)>;
+
+struct ArrayProgram;
+
 /// A function of the ABI with its result arguments, which have no entries yet.
 FunctionExpressions empty_function(const char* name);
 
@@ -66,6 +73,8 @@ class AbiFunctions {
   FunctionExpressions rhs_open();  // without forces of contacts
   FunctionExpressions power();
   FunctionExpressions jac();
+  /// `jac` with loops over arrays; null if the formulation has none.
+  std::shared_ptr<const ArrayProgram> jac_loops(const MakeFunction& make);
   FunctionExpressions jac_p(std::size_t parameters);
   FunctionExpressions jac_u(std::size_t inputs);
   /// Derivatives times the argument v (abi/functions.inc). Sources: Griewank and Walther, Evaluating Derivatives, 2008,

@@ -11,6 +11,7 @@
 
 #include "abi/functions.hpp"
 #include "error.hpp"
+#include "program/array_program.hpp"
 #include "program/frames.hpp"
 #include "program/from_dag.hpp"
 #include "program/hoist.hpp"
@@ -23,6 +24,9 @@ namespace eomgen::program {
 namespace {
 
 constexpr double max_cost_ratio = 1.5;  // times the cheapest raw cost
+
+// Longer straight-line code of `jac` exceeds the caches of instructions, so that loops may take less time.
+constexpr std::size_t smallest_looped = 5000;  // flops
 
 struct Candidate {
   std::size_t index = 0;  // index of the candidate
@@ -359,10 +363,28 @@ class Derivatives {
       best_cost = cost;
       which = i;
     }
-    return finished(*best, wanted[which]);
+    Function result = finished(*best, wanted[which]);
+    if (name == "jac" && result.operations.flops() >= smallest_looped) {
+      std::shared_ptr<const ArrayProgram> in_loops = loops();
+      if (in_loops && in_loops->cost() < result.operations.cost()) result.loops = std::move(in_loops);
+    }
+    return result;
   }
 
  private:
+  /// The cheapest form of `jac` with loops, or null.
+  std::shared_ptr<const ArrayProgram> loops() {
+    const MakeFunction make = [this](const FunctionExpressions& expressions) {
+      return finished(optimised(starts(as_derived(chosen_, expressions))), expressions);
+    };
+    std::shared_ptr<const ArrayProgram> result;
+    for (AbiFunctions* functions : ways_) {
+      std::shared_ptr<const ArrayProgram> other = functions->jac_loops(make);
+      if (other && (!result || other->cost() < result->cost())) result = std::move(other);
+    }
+    return result;
+  }
+
   const std::vector<system::EquationSystem>& systems_;
   const Request& request_;
   AbiFunctions& chosen_;

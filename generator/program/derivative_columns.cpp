@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "program/abi_functions.hpp"
+#include "program/array_program.hpp"
 
 namespace eomgen::program {
 
@@ -83,6 +84,41 @@ std::optional<std::vector<Ref>> AbiFunctions::solved_column(symbolic::Derivation
       column[i] = dag.add(column[i], dag.mul(residual.M_inverse[i * n_ + k], force));
   }
   return column;
+}
+
+std::shared_ptr<const ArrayProgram> AbiFunctions::jac_loops(const MakeFunction& make) {
+  if (!system_.residual || !system_.residual->slopes || m_ > 0 || !system_.states.empty() || has_forces() ||
+      differentiates_solution())
+    return nullptr;
+  Dag& dag = *system_.dag;
+  system::AccelerationSlopes slopes = *system_.residual->slopes;
+  const std::vector<Ref>& applied = system_.residual->applied;
+  symbolic::Derivation by_time = symbolic::partial_derivative(dag, {SymbolKind::time, 0, 0}, norms());
+  for (std::size_t i = 0; i < n_; ++i) {
+    if (!dag.is_zero(by_time(system_.residual->inertia[i])) || !dag.is_zero(by_time(applied[i]))) return nullptr;
+  }
+  std::map<std::pair<std::size_t, std::size_t>, Symbol> places;
+  for (const system::ForceSlope& force : slopes.forces) places[{force.row, force.column}] = force.symbol;
+  std::map<Symbol, Ref> values;
+  for (std::size_t column = 0; column < 2 * n_; ++column) {
+    const Symbol along{SymbolKind::coordinate, system_.free[column % n_], static_cast<std::uint8_t>(column / n_)};
+    symbolic::Derivation d = symbolic::partial_derivative(dag, along, norms());
+    for (std::size_t row = 0; row < n_; ++row) {
+      const Ref value = d(applied[row]);
+      const auto known = places.find({row, column});
+      if (known != places.end())
+        values[known->second] = value;
+      else if (!dag.is_zero(value))
+        return nullptr;
+    }
+  }
+  symbolic::Substitution forces(dag, std::move(values));
+  for (system::ArrayStep& step : slopes.steps) {
+    for (system::ArrayStore& store : step.stores) store.value = (*solution_)(forces(store.value));
+    for (Ref& value : step.loop.values) value = (*solution_)(forces(value));
+  }
+  return std::make_shared<const ArrayProgram>(array_program(
+      dag, slopes, n_, [this](FunctionExpressions& function) { add_solution(function); }, make));
 }
 
 std::vector<Ref> AbiFunctions::differentiated_forces(symbolic::Derivation& d) {

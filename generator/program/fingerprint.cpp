@@ -7,6 +7,8 @@
 #include <iterator>
 #include <sstream>
 
+#include "program/array_program.hpp"
+
 namespace eomgen::program {
 namespace {
 
@@ -83,6 +85,27 @@ class Writer {
     for (const PivotTest& p : f.pivots) {
       operand(p.pivot);
       operand(p.scale);
+    }
+    if (f.loops) loops(*f.loops);
+  }
+
+  void runs(const std::vector<ArrayRun>& list) {
+    words(list.size());
+    for (const ArrayRun& run : list)
+      words(static_cast<int>(run.from_space), static_cast<int>(run.to_space), run.from, run.from_step, run.to,
+            run.to_step, run.count, run.from_group, run.to_group, run.groups);
+  }
+  void loops(const ArrayProgram& p) {
+    words(p.work, p.fills_result, p.steps.size());
+    function(p.scalars);
+    for (const ProgramStep& step : p.steps) {
+      runs(step.before);
+      runs(step.after);
+      if (!step.loop) continue;
+      words(step.loop->count);
+      for (const auto* list : {&step.loop->inputs, &step.loop->scalars, &step.loop->outputs})
+        words(fmt::format("{}", fmt::join(*list, " ")));
+      function(step.loop->body);
     }
   }
 };

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <eom/contacts/description.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -81,6 +82,8 @@ struct ResultShape {
   int code = 0;
 };
 
+struct ArrayProgram;
+
 struct Function {
   std::string name;  // in the ABI: "rhs", "prepare", "mass", ...
   std::vector<Result> results;
@@ -90,6 +93,7 @@ struct Function {
   std::vector<PivotTest> pivots;
   bool uses_input = false;
   Operations operations;
+  std::shared_ptr<const ArrayProgram> loops;  // the same function for C and C++ (array_program.hpp), or null
 };
 
 /// Whether a function writes dx: its values are tested to be finite.

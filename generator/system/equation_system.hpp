@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "symbolic/factorisation.hpp"
+#include "system/array_loops.hpp"
 #include "system/output.hpp"
 
 namespace eomgen::system {
@@ -72,6 +73,8 @@ struct Residual {
   // If the formulation solves for them itself, and otherwise empty: -M^-1 by_q, -M^-1 by_qdot, and M^-1 if `applied`
   // is not 0.
   std::vector<Ref> qddot_by_q, qddot_by_qdot, M_inverse;
+  // -M^-1 by_q, -M^-1 by_qdot in loops, with the slopes of `applied`: may be empty.
+  std::optional<AccelerationSlopes> slopes;
   std::vector<symbolic::Pivot> pivots;
   // The same equations, M qddot = f, and their solution, with most expressions in common: may be empty.
   std::vector<Ref> M, f, qddot;

@@ -48,6 +48,12 @@ void for_each_expression(System& system, Visit&& visit) {
     for (auto* list : {&residual.inertia, &residual.applied, &residual.by_q, &residual.by_qdot, &residual.qddot_by_q,
                        &residual.qddot_by_qdot, &residual.M_inverse})
       all(*list, ExpressionRole::motion);
+    if (residual.slopes) {
+      for (auto& step : residual.slopes->steps) {
+        for (auto& stored : step.stores) visit(stored.value, ExpressionRole::motion);
+        all(step.loop.values, ExpressionRole::motion);
+      }
+    }
     for (auto& pivot : residual.pivots) {
       visit(pivot.pivot, ExpressionRole::motion);
       visit(pivot.scale, ExpressionRole::motion);

@@ -27,7 +27,7 @@ const std::vector<std::pair<std::string, std::string>> products = {
     {"model", "model/model.hpp"},         {"mechanics", "mechanics/mechanics.hpp"},
     {"system", "system/output.hpp"},      {"system", "system/equation_system.hpp"},
     {"system", "system/expressions.hpp"}, {"system", "system/chart_change.hpp"},
-    {"program", "program/program.hpp"},
+    {"system", "system/array_loops.hpp"}, {"program", "program/program.hpp"},
 };
 const std::vector<std::string> data_flow = {"forces", "model",  "coordinates",  "symbolic", "mechanics",
                                             "derive", "system", "conservation", "reading",  "program",

@@ -149,6 +149,65 @@ int main(void)
     CHECK(by_hand[i].get<double>() == doctest::Approx(final[names[i]].get<double>()).epsilon(1e-9));
 }
 
+namespace {
+
+/// A floating base with two legs whose links are in another order than their coordinates, and a second tree.
+std::string two_trees() {
+  std::string text = R"toml(format = 1
+[parameters]
+m = 2
+g = 9.81
+L = 0.7
+A = 0.3
+B = 0.4
+C = 0.5
+D = 0.1
+[coordinates]
+q9 = "rad"
+z = "m"
+x = "m"
+[[force]]
+gravity = "-g*E3"
+[[force]]
+generalized = { q4 = "-A*q4_dot", x = "-B*x" }
+)toml";
+  const auto body = [&text](const char* name, const char* position, const std::string& rotation, const char* parent) {
+    text += std::string("[[body]]\nname = \"") + name +
+            "\"\nmass = \"m\"\ninertia = [[\"A\", \"D\", 0], [\"D\", \"B\", 0], [0, 0, \"C\"]]\nposition = \"" +
+            position + "\"\nrotation = { " + rotation + " }\n" +
+            (*parent == 0 ? "" : "relative_to = \"" + std::string(parent) + "\"\n");
+  };
+  const auto pin = [](const char* axis, const char* angle) {
+    return "axis = \"" + std::string(axis) + "\", angle = \"" + angle + "\"";
+  };
+  body("b1", "x*E1 + z*E3 + L*b1.e3", R"(euler = "321", angles = ["a", "b", "c"])", "");
+  body("b2", "b1 + L*b1.e1 + L*b2.e1", pin("b1.e2", "q2"), "b1");
+  body("b3", "b1 - L*b1.e1 + L*b3.e3", pin("b1.e1", "q3"), "b1");
+  body("b4", "b2 + L*b2.e1 + L*b4.e1", pin("b2.e3", "q4"), "b2");
+  body("b5", "b3 + L*b3.e1 + L*b5.e2", pin("b3.e2", "q5"), "b3");
+  body("b6", "b3 - L*b3.e1 + L*b6.e1", pin("b3.e3", "q6"), "b3");
+  body("b7", "b5 + L*b5.e1 + L*b7.e2", pin("b5.e1", "q7"), "b5");
+  body("c1", "3*E1 + L*c1.e1", pin("E2", "q8"), "");
+  body("c2", "c1 + L*c1.e1 + L*c2.e3", pin("c1.e1", "q9"), "c1");
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("C and C++: the Jacobian of large trees has loops, and is that of the straight-line code") {
+  const Folder folder;
+  folder.write("trees.toml", two_trees());
+  document(folder, {"emit", "trees.toml", "-o", ".", "--with", "jac"});
+  folder.write("caller.c", c_caller("trees"));
+  compile(folder, {"gcc", "-std=c11", "-O1", "-o", "caller", "caller.c", "trees.c", "-lm"});
+  const Json all = printed(folder, "caller");
+  CHECK(all["info"]["operations"]["jac"]["loops"]["in_loops"] > 1000);
+  CHECK(all["selftest"] == 0);
+  folder.write("templates.cpp", "#include \"trees.hpp\"\nint main() { return eom::trees::selftest(); }\n");
+  compile(folder, {"g++", "-std=c++20", "-O1", "-o", "templates", "templates.cpp"});
+  CHECK(run_child({{folder / "templates"}, folder.path()}).status == 0);
+}
+
 TEST_CASE("--fix: a parameter becomes a number, and the array of parameters keeps its size") {
   const Folder folder;
   const Json fixed = document(folder, {"emit", "P7_moving_sphere", "-o", ".", "--fix", "m,g,D"});

@@ -4,10 +4,13 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <map>
 #include <string>
 
 #include "derive/formulations.hpp"
+#include "derive/trees/body_compliance.hpp"
 #include "derive/trees/body_residual.hpp"
+#include "derive/trees/compliance_loops.hpp"
 #include "symbolic/calculus.hpp"
 #include "symbolic/evaluate.hpp"
 #include "symbolic/sample.hpp"
@@ -160,6 +163,76 @@ TEST_CASE("the residual of a tree of bodies is M qddot - f, and its derivatives 
     std::vector<Ref> identity(n * n, dag.zero());
     for (std::size_t i = 0; i < n; ++i) identity[i * n + i] = dag.one();
     CHECK(difference_of(dag, product(dag, s.M, residual->M_inverse), identity) < as_good_as_exact);
+  }
+}
+
+namespace {
+
+/// Carries the loops out on expressions: qddot_by_q, then qddot_by_qdot by rows, without the slopes of forces.
+std::vector<Ref> carried_out(symbolic::Dag& dag, const system::AccelerationSlopes& slopes, std::size_t n) {
+  std::vector<Ref> work(slopes.work, dag.zero()), columns(2 * n * n, dag.zero());
+  const auto entry = [&](const system::ArrayEntry& e) -> Ref& { return (e.in_result ? columns : work).at(e.index); };
+  std::map<symbolic::Symbol, Ref> no_forces;
+  for (const system::ForceSlope& force : slopes.forces) no_forces[force.symbol] = dag.zero();
+  symbolic::Substitution without_forces(dag, no_forces);
+  for (const system::ArrayStep& step : slopes.steps) {
+    for (const system::ArrayStore& store : step.stores) entry(store.to) = without_forces(store.value);
+    for (const system::ArrayCopy& copy : step.before) entry(copy.to) = entry(copy.from);
+    std::vector<std::pair<std::size_t, Ref>> written;
+    for (std::size_t k = 0; k < step.loop.count; ++k) {
+      std::map<symbolic::Symbol, Ref> inputs = no_forces;
+      for (std::uint32_t j = 0; j < step.loop.inputs.size(); ++j)
+        inputs[{SymbolKind::vector, j, 0}] = work.at(step.loop.inputs[j] + k);
+      symbolic::Substitution pass(dag, inputs);
+      for (std::size_t i = 0; i < step.loop.values.size(); ++i)
+        written.emplace_back(step.loop.outputs[i] + k, pass(step.loop.values[i]));
+    }
+    for (const auto& [place, value] : written) work.at(place) = value;
+    for (const system::ArrayCopy& copy : step.after) entry(copy.to) = entry(copy.from);
+  }
+  std::vector<Ref> rows;
+  for (std::size_t order = 0; order < 2; ++order) {
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j) rows.push_back(columns[(order * n + j) * n + i]);
+    }
+  }
+  return rows;
+}
+
+/// A tree whose links are not in the order of their coordinates, with branches at two links, links of several freedoms,
+/// and a second tree.
+const std::string wide_tree =
+    constants + "[coordinates]\nq9 = \"rad\"\nz = \"m\"\nx = \"m\"\n" +
+    body("b1", "x*E1 + z*E3 + L*b1.e3", "{ euler = \"321\", angles = [\"a\", \"b\", \"c\"] }") +
+    body("b2", "b1 + L*b1.e1 + L*b2.e1", "{ axis = \"b1.e2\", angle = \"q2\" }", "b1") +
+    body("b3", "b1 - L*b1.e1 + L*b3.e3", "{ axis = \"b1.e1\", angle = \"q3\" }", "b1") +
+    body("b4", "b2 + L*b2.e1 + L*b4.e1", "{ axis = \"b2.e3\", angle = \"q4\" }", "b2") +
+    body("b5", "b3 + L*b3.e1 + L*b5.e2", "{ axis = \"b3.e2\", angle = \"q5\" }", "b3") +
+    body("b6", "b3 - L*b3.e1 + L*b6.e1", "{ axis = \"b3.e3\", angle = \"q6\" }", "b3") +
+    body("b7", "b5 + L*b5.e1 + L*b7.e2", "{ axis = \"b5.e1\", angle = \"q7\" }", "b5") +
+    body("c1", "3*E1 + L*c1.e1", "{ axis = \"E2\", angle = \"q8\" }") +
+    body("c2", "c1 + L*c1.e1 + L*c2.e3", "{ axis = \"c1.e1\", angle = \"q9\" }", "c1") +
+    "[[force]]\ngeneralized = { q4 = \"-A*q4_dot\", x = \"-B*x\" }\n";
+
+}  // namespace
+
+TEST_CASE("the derivatives of the accelerations of trees of bodies in loops are those without loops") {
+  std::vector<Example> all(std::begin(examples), std::end(examples));
+  all.push_back({"a wide tree, and a second one", wide_tree});
+  for (const Example& example : all) {
+    INFO(std::string(example.name));
+    const model::Model model = model::read_model_text(example.text, "tree");
+    mechanics::Mechanics m = mechanics::build_mechanics(model);
+    const std::optional<derive::BodyTree> tree = derive::body_tree(m, m.free, true);
+    REQUIRE(tree.has_value());
+    const std::vector<derive::LinkMotion> motion = derive::link_motions(*m.dag, *tree);
+    const std::vector<derive::LinkDynamics> dynamics = derive::link_dynamics(m, *tree, motion);
+    system::Residual residual;
+    derive::add_compliance(*m.dag, *tree, motion, dynamics, residual);
+    std::vector<Ref> expected = residual.qddot_by_q;
+    expected.insert(expected.end(), residual.qddot_by_qdot.begin(), residual.qddot_by_qdot.end());
+    const system::AccelerationSlopes slopes = derive::compliance_loops(*m.dag, *tree, motion, dynamics);
+    CHECK(difference_of(*m.dag, carried_out(*m.dag, slopes, m.free.size()), expected) < as_good_as_exact);
   }
 }
 

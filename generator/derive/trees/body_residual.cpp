@@ -6,6 +6,7 @@
 #include "derive/trees/body_compliance.hpp"
 #include "derive/trees/body_elimination.hpp"
 #include "derive/trees/body_recursion.hpp"
+#include "derive/trees/compliance_loops.hpp"
 #include "derive/trees/link_dynamics.hpp"
 #include "derive/trees/tree_reduction.hpp"
 
@@ -13,6 +14,9 @@ namespace eomgen::derive {
 namespace {
 
 using symbolic::cross;
+
+// Smaller trees have straight-line code that fits into the instruction cache.
+constexpr std::size_t smallest_loops = 9;  // coordinates
 
 /// The force on a coordinate per unit of a disturbance: the coefficients of its three vectors.
 struct Response {
@@ -169,6 +173,7 @@ system::Residual residual_of(Mechanics& m, const BodyTree& tree) {
   }
   Rows(dag, tree, motion, dynamics)(residual);
   add_compliance(dag, tree, motion, dynamics, residual);
+  if (tree.Q.size() >= smallest_loops) residual.slopes = compliance_loops(dag, tree, motion, dynamics);
   BodyEquations equations =
       body_equations(dag, tree, motion, bias_accelerations(dag, tree, motion, GivenAccelerations::zero));
   residual.M = std::move(equations.M);
@@ -215,6 +220,12 @@ std::optional<system::Residual> body_residual(Mechanics& m) {
         &residual.M_inverse, &residual.M, &residual.f, &residual.qddot, &residual.applied})
     finish(*list);
   for (symbolic::Pivot& pivot : residual.pivots) pivot.pivot = written(imposed(pivot.pivot));
+  if (residual.slopes) {
+    for (system::ArrayStep& step : residual.slopes->steps) {
+      for (system::ArrayStore& store : step.stores) store.value = written(imposed(store.value));
+      finish(step.loop.values);
+    }
+  }
   return residual;
 }
 

@@ -128,7 +128,7 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
   const ModelNames names = model_names(program, context);
   std::vector<std::vector<std::pair<std::string, std::string>>> functions, declared;
   bool packs = false;
-  std::vector<FilePart> parts = file_parts(program, name + "_", dialect.real);
+  std::vector<FilePart> parts = file_parts(program, name + "_", dialect);
   if (context.start_functions) {
     parts.push_back({"start_values", "Formulas of the default scene.", &context.start_functions->values, true, "", ""});
     if (context.start_functions->row_count() > 0)
@@ -138,7 +138,7 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
     const std::string full = fmt::format("{}_{}", name, part.name);
     std::string text;
     if (part.function == nullptr) {
-      text = fmt::format("{}\n{{\n{}}}\n", head_of(full, part.arguments), part.body);
+      text = fmt::format("{}{}\n{{\n{}}}\n", part.internal ? "static " : "", head_of(full, part.arguments), part.body);
     } else {
       const FunctionText printed = print_function(*part.function, names, context, dialect);
       packs = packs || printed.packs > 0;

@@ -79,7 +79,7 @@ std::string index_names(const ModelNames& names, const program::Program& program
 TemplateFunctions template_functions(const program::Program& program, const ModelNames& names,
                                      const EmissionContext& context, const Dialect& dialect, const std::string& mark) {
   TemplateFunctions result;
-  for (const FilePart& part : file_parts(program, "", "Real")) {
+  for (const FilePart& part : file_parts(program, "", dialect)) {
     std::vector<std::pair<std::string, std::string>> entry{{"purpose", part.purpose}};
     if (part.function == nullptr) {
       entry.emplace_back("head", wrapped(fmt::format("{}int {}({})", mark, part.name, part.arguments),
