@@ -116,6 +116,7 @@ void add_velocity_form(const Mechanics& m, Lowering& lower, Constraint& result) 
 // The contact point must stay on both surfaces in any motion.
 void check_contact(const Mechanics& m, Lowering& lower, const model::Constraint& constraint) {
   const model::BodyContact& contact = *constraint.contact;
+  if (contact.is_nearest) return;
   const auto refuse = [&](const std::string& what, const char* remedy) {
     throw Error("mechanics", m.model->where(constraint.span), what, remedy);
   };

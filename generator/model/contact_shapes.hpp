@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shapes of a [[contact]]: of bodies that touch a plane, of fixed obstacles that particles and balls touch, and of
-// capsules and balls that touch one another. In: names and sizes as written, in parentheses. Out: expressions of the
-// model language. Each kind of body and obstacle is one line of a table.
+// Shapes of a [[contact]]: of bodies that touch planes, obstacles and one another, and of obstacles at rest. In: names
+// and sizes as written, in parentheses. Out: expressions of the model language. Each kind of shape and obstacle is one
+// entry of a table.
 #pragma once
 
 #include <fmt/format.h>
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "model/contact_nearest.hpp"
 
 namespace eomgen::model {
 
@@ -19,6 +22,8 @@ struct BodyShape {
   /// Vectors from the centre of mass. n: the unit normal of the plane, as an expression.
   std::vector<std::string> (*points)(const std::string& body, const std::vector<std::string>& size,
                                      const std::string& n);
+  /// For contacts with other than planes; none if the shape has only those.
+  Core (*core)(const std::string& body, const std::vector<std::string>& size) = nullptr;
 };
 
 /// The highest point of a circle about e3, from its centre; the lowest one is opposite. There is none while e3 is along
@@ -34,17 +39,26 @@ inline const std::array<BodyShape, 6>& body_shapes() {
        {"radius"},
        [](const std::string&, const Sizes& s, const std::string& n) -> Sizes {
          return {fmt::format("-{}*{}", s[0], n)};
+       },
+       [](const std::string& b, const Sizes& s) -> Core {
+         return {Core::Kind::point, b, s[0], "", ""};
        }},
       {"disk",
        {"radius"},
        [](const std::string& b, const Sizes& s, const std::string& n) -> Sizes {
          return {"-" + highest_on_rim(b, s[0], n)};
+       },
+       [](const std::string& b, const Sizes& s) -> Core {
+         return {Core::Kind::disk, b, "0", b + ".e3", s[0]};
        }},
       {"capsule",  // two half spheres, whose centres are a length apart
        {"radius", "length"},
        [](const std::string& b, const Sizes& s, const std::string& n) -> Sizes {
          return {fmt::format("{1}/2*{0}.e3 - {2}*{3}", b, s[1], s[0], n),
                  fmt::format("-{1}/2*{0}.e3 - {2}*{3}", b, s[1], s[0], n)};
+       },
+       [](const std::string& b, const Sizes& s) -> Core {
+         return {Core::Kind::segment, b, s[0], b + ".e3", s[1]};
        }},
       {"cylinder",
        {"radius", "length"},
@@ -72,12 +86,12 @@ inline const std::array<BodyShape, 6>& body_shapes() {
   return shapes;
 }
 
-/// A fixed obstacle. Its gap to a ball of radius R about a particle, or to the particle itself if R is 0.
+/// A fixed obstacle.
 struct Obstacle {
   const char* name;  // the key with its size
   std::vector<const char*> further;
-  /// values: of `name`, then of `further`.
-  std::string (*gap)(const std::string& particle, const std::vector<std::string>& values, const std::string& radius);
+  /// Where a shape is nearest to it. values: of `name`, then of `further`. Null for a surface.
+  std::vector<Nearest> (*nearest)(const Core& core, const std::vector<std::string>& values, Names& names);
 };
 
 /// The expression with the names x and y replaced by the position of a particle along E1 and E2.
@@ -99,67 +113,33 @@ inline std::string at_particle(const std::string& expression, const std::string&
   return result;
 }
 
+/// The height of a particle or point above the surface z = f(x, y).
+inline std::string height_above(const std::string& f, const std::string& particle) {
+  return fmt::format("dot({}, E3) - {}", particle, at_particle(f, particle));
+}
+
 inline const std::array<Obstacle, 5>& obstacles() {
   using Values = std::vector<std::string>;
   static const std::array<Obstacle, 5> all{{
       {"sphere",
        {"centre"},
-       [](const std::string& p, const Values& v, const std::string& r) {
-         return fmt::format("norm({} - {}) - {} - {}", p, v[1], v[0], r);
+       [](const Core& core, const Values& v, Names& names) {
+         return nearest_of_cores(core, {Core::Kind::point, v[1], v[0], "", ""}, names);
        }},
-      {"hollow",  // a sphere around the particle
+      {"hollow",  // a sphere around the shape
        {"centre"},
-       [](const std::string& p, const Values& v, const std::string& r) {
-         return fmt::format("{} - {} - norm({} - {})", v[0], r, p, v[1]);
-       }},
+       [](const Core& core, const Values& v, Names& names) { return nearest_to_hollow(core, v[1], v[0], names); }},
       {"cylinder",
        {"point", "axis"},
-       [](const std::string& p, const Values& v, const std::string& r) {
-         return fmt::format("norm(cross({} - {}, unit({}))) - {} - {}", p, v[1], v[2], v[0], r);
+       [](const Core& core, const Values& v, Names& names) {
+         return nearest_to_cylinder(core, v[0], v[1], v[2], names);
        }},
       {"cone",  // of a half angle, touched from outside, open along its axis
        {"apex", "axis"},
-       [](const std::string& p, const Values& v, const std::string& r) {
-         return fmt::format("norm(cross({0} - {1}, unit({2})))*cos({3}) - dot({0} - {1}, unit({2}))*sin({3}) - {4}", p,
-                            v[1], v[2], v[0], r);
-       }},
-      {"surface",  // z = f(x, y), touched from above by particles; the gap is measured along E3
-       {},
-       [](const std::string& p, const Values& v, const std::string&) {
-         return fmt::format("dot({}, E3) - {}", p, at_particle(v[0], p));
-       }},
+       [](const Core& core, const Values& v, Names& names) { return nearest_to_cone(core, v[0], v[1], v[2], names); }},
+      {"surface", {}, nullptr},  // z = f(x, y), touched from above; the gap of points is measured along E3
   }};
   return all;
-}
-
-/// A segment along e3 with a radius around its centre; a ball without a length. Sizes are expressions.
-struct Capsule {
-  std::string centre, radius, length;
-  bool is_ball() const { return length.empty(); }
-};
-
-/// The distance of two capsules: |d + s u - t v| less both radii, with the nearest points at s and t from the centres.
-/// The nearest points of the lines give s first, then t and s are nearest to one another within the segments. The last
-/// step is exact, so that a term below the rounding of sin^2 keeps parallel axes defined.
-inline std::string gap_of_capsules(const Capsule& a, const Capsule& b) {
-  const auto within = [](const std::string& x, const Capsule& c) {
-    return fmt::format("max(-{1}/2, min({1}/2, {0}))", x, c.length);
-  };
-  const std::string d = fmt::format("({} - {})", a.centre, b.centre);
-  const std::string u = a.centre + ".e3", v = b.centre + ".e3";
-  const std::string along_u = fmt::format("dot({}, {})", u, d), along_v = fmt::format("dot({}, {})", v, d);
-  std::string apart = d;
-  if (a.is_ball() != b.is_ball()) {
-    apart += a.is_ball() ? fmt::format(" - {}*{}", within(along_v, b), v)
-                         : fmt::format(" + {}*{}", within("-" + along_u, a), u);
-  } else if (!a.is_ball()) {
-    const std::string cosine = fmt::format("dot({}, {})", u, v);
-    const std::string on_lines =
-        fmt::format("({0}*{1} - {2})/(dot(cross({3}, {4}), cross({3}, {4})) + 1e-14)", cosine, along_v, along_u, u, v);
-    const std::string t = within(fmt::format("{}*{} + {}", cosine, within(on_lines, a), along_v), b);
-    apart += fmt::format(" + {}*{} - {}*{}", within(fmt::format("{}*{} - {}", cosine, t, along_u), a), u, t, v);
-  }
-  return fmt::format("norm({}) - {} - {}", apart, a.radius, b.radius);
 }
 
 }  // namespace eomgen::model

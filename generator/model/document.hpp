@@ -21,6 +21,7 @@ struct Value {
   std::size_t begin = 0;                  // byte offset in the file
   std::vector<std::size_t> text_offsets;  // strings: file offsets of every byte of `text` and of its end
   Span span;
+  bool generated = false;  // tables: written by eomgen, which has keys that files have not
 
   const Value* find(std::string_view key) const;
   const Entry* entry(std::string_view key) const;

@@ -13,9 +13,42 @@ bool ContactsReader::touches_body(const Value& on) {
   return symbol != nullptr && symbol->frame > 0;
 }
 
-std::optional<std::string> ContactsReader::between_bodies(BodyContact& contact, const Value& table,
-                                                          std::map<std::string, TypedNode>& local) {
+// The geometry is right for all positions by its construction (contact_nearest.hpp). Obstacles are at rest.
+std::string ContactsReader::nearest_points(BodyContact& contact, const Value& table,
+                                           std::map<std::string, TypedNode>& local) {
+  contact.is_nearest = true;
   const Value& on = *table.find("on");
+  if (touches_body(on)) other_body(contact, on, local);
+  const Context any{"a contact", on_motion, Shape::either, std::nullopt, ""};
+  for (const Value& value : table.find("at_rest")->items)
+    resolver_.value(value, {"an obstacle with friction", 0, Shape::either, std::nullopt,
+                            "it is at rest: write it with parameters, or the shape of a body, on = \"B\""});
+  std::map<std::string, TypedNode> parts;  // names of the model and of parts, without those of the equations
+  for (const Entry& entry : table.find("parts")->entries) {
+    if (scope_.find(entry.key) != nullptr)
+      source_.fail(table.span, fmt::format("{} is a name of the geometry of this contact", quote(entry.key)),
+                   "rename what has this name in the model");
+    parts[entry.key] = resolver_.text(entry.value.text, parts, table.span, any);
+  }
+  const auto vector = [&](const char* key) {
+    return resolver_.text(table.find(key)->text, parts, table.span,
+                          {"a contact", on_motion, Shape::vector, std::nullopt, ""});
+  };
+  local["p"] = vector("at");
+  local["pb"] = vector("at_b");
+  local["n"] = vector("normal");
+  local["gap"] = resolver_.text(table.find("gap")->text, parts, table.span,
+                                {"the gap of a contact", on_motion, Shape::scalar, dimension_of("m"), ""});
+  default_tangents(true, table.span, local);
+  const Context motion{"a contact", on_motion | on_velocity, Shape::vector, std::nullopt, ""};
+  const bool rests = contact.other_frame == 0;
+  local["o"] = rests ? local.at("pb") : resolver_.text("xb + pb", local, table.span, motion);
+  local["V"] = rests ? resolver_.check_context(resolver_.number(0, table.span), table.span, motion)
+                     : resolver_.text("vb + cross(wb, pb)", local, table.span, motion);
+  return "gap";
+}
+
+void ContactsReader::other_body(BodyContact& contact, const Value& on, std::map<std::string, TypedNode>& local) {
   contact.other_frame = require_frame(on, "'on'");
   contact.other_place = frame_sources_[contact.other_frame].place;
   if (contact.other_place == 0)
@@ -24,6 +57,11 @@ std::optional<std::string> ContactsReader::between_bodies(BodyContact& contact, 
   if (contact.other_frame == contact.frame)
     source_.fail(on.span, fmt::format("{} cannot touch itself", quote(on.text)), "name the other body, or \"ground\"");
   name_motion(contact.other_frame, "b", on.span, local);
+}
+
+std::optional<std::string> ContactsReader::between_bodies(BodyContact& contact, const Value& table,
+                                                          std::map<std::string, TypedNode>& local) {
+  other_body(contact, *table.find("on"), local);
   const bool shapes = table.find("shape") != nullptr;
   if (shapes) {
     spheres_in_contact(table, local);

@@ -25,9 +25,12 @@ class ContactsReader : private SectionReader {
   void set_range_of_tilt(std::uint32_t frame, const Value& table, const std::map<std::string, TypedNode>& local);
   void draw_shapes(const BodyContact& contact, const Value& table, const std::map<std::string, TypedNode>& local);
   bool touches_body(const Value& on);
+  void other_body(BodyContact& contact, const Value& on, std::map<std::string, TypedNode>& local);
   /// The text of psi; nothing for the general psi of two points and a normal.
   std::optional<std::string> between_bodies(BodyContact& contact, const Value& table,
                                             std::map<std::string, TypedNode>& local);
+  /// Of a contact that [[contact]] wrote; the text of psi.
+  std::string nearest_points(BodyContact& contact, const Value& table, std::map<std::string, TypedNode>& local);
   void spheres_in_contact(const Value& table, std::map<std::string, TypedNode>& local);
   void points_in_contact(const Value& table, std::map<std::string, TypedNode>& local);
 };

@@ -192,8 +192,8 @@ void ContactsReader::read_contact_point(Constraint& constraint, const Value& tab
   contact.tangential_velocity = read("ddt(p) - cross(w, p)", Shape::vector);
   // The point of contact may move over the body, but not along the normal: it would then not be the point of contact.
   contact.normal_velocity.push_back(read("dot(ddt(p) - cross(w, p), n)", Shape::scalar));
+  if (local.contains("pb")) contact.other_arm = local.at("pb").node;
   if (contact.other_frame == 0) return;
-  contact.other_arm = local.at("pb").node;
   contact.normal_velocity.push_back(read("dot(ddt(pb) - cross(wb, pb), n)", Shape::scalar));
   contact.offset = read("x + p - o - dot(x + p - o, n)*n", Shape::vector);
 }
@@ -201,7 +201,8 @@ void ContactsReader::read_contact_point(Constraint& constraint, const Value& tab
 void ContactsReader::read(Constraint& constraint, const Value& table, bool rolling, bool rough) {
   const std::string what = fmt::format("the constraint '{}'", constraint.name);
   require_kind(Value::Kind::table, table, what, rolling_form);
-  check_keys(table, {what, {"body", "on", "at", "shape", "at_b", "shape_b", "normal", "tangent"}});
+  if (!table.generated)
+    check_keys(table, {what, {"body", "on", "at", "shape", "at_b", "shape_b", "normal", "tangent"}});
   const Value& name = require_value(table, "body", what, rolling_form);
   const std::uint32_t frame = require_frame(name, fmt::format("'body' of {}", what));
   if (frame == 0 || frame_sources_[frame].place == 0)
@@ -213,7 +214,10 @@ void ContactsReader::read(Constraint& constraint, const Value& table, bool rolli
   const Value& on = require_value(table, "on", what, "add on = \"ground\"");
   std::map<std::string, TypedNode> local;
   std::string psi = "dot(x + p - o, n)";
-  if (touches_body(on)) {
+  if (table.find("gap") != nullptr) {
+    name_motion(frame, "", table.span, local);
+    psi = nearest_points(*constraint.contact, table, local);
+  } else if (touches_body(on)) {
     name_motion(frame, "", table.span, local);
     psi = between_bodies(*constraint.contact, table, local).value_or(psi);
   } else {

@@ -145,7 +145,8 @@ void Drawing::contacts() {
     for (std::size_t k = 0; k < 3; ++k) at[k] = mechanics_.dag->add(at[k], arm[k]);
     Vec3 foot = at;
     std::optional<std::array<std::size_t, 2>> tangents;
-    if (contact.other_place == 0 && contact.tangents[0] != model::no_node && contact.tangents[1] != model::no_node) {
+    if (contact.other_place == 0 && contact.other_arm == model::no_node && contact.tangents[0] != model::no_node &&
+        contact.tangents[1] != model::no_node) {
       const std::size_t t1 = vector(contact.tangents[0]), t2 = vector(contact.tangents[1]);
       tangents = {t1, t2};
       symbolic::Dag& dag = *mechanics_.dag;
