@@ -25,8 +25,7 @@ std::string across(const std::string& v, const std::string& unit) {
 std::string point_of(const Core& core, const std::string& position, Names& name) {
   if (core.kind == Core::Kind::point) return core.centre;
   const std::string d = name(fmt::format("{} - {}", position, core.centre));
-  if (core.kind == Core::Kind::segment)
-    return name(along(core, clamp(fmt::format("dot({}, {})", core.axis, d), core)));
+  if (core.kind == Core::Kind::segment) return name(along(core, clamp(fmt::format("dot({}, {})", core.axis, d), core)));
   const std::string in_plane = name(across(d, core.axis));  // squares: the length has no slope above the centre
   return name(fmt::format("{0} + {1}*{2}/sqrt(max({2}^2, dot({1}, {1})))", core.centre, in_plane, core.size));
 }
@@ -120,9 +119,9 @@ std::vector<Nearest> nearest_to_cylinder(const Core& a, const std::string& radiu
   return {by_cores(own, on_axis, a.radius, radius, name)};
 }
 
-// The distance of a point of the segment from the cone is convex along the segment. Its least value is where that of the
-// mantle's distance is, rho cos - h sin with rho^2 = A s^2 + 2 B s + C, or where the tip is nearest. The nearer one of
-// both points is the nearest of all.
+// The distance of a point of the segment from the cone is convex along the segment. Its least value is where that of
+// the mantle's distance is, rho cos - h sin with rho^2 = A s^2 + 2 B s + C, or where the tip is nearest. The nearer one
+// of both points is the nearest of all.
 std::vector<Nearest> nearest_to_cone(const Core& a, const std::string& angle, const std::string& apex,
                                      const std::string& axis, Names& name) {
   if (a.kind == Core::Kind::disk) return {};
@@ -135,8 +134,8 @@ std::vector<Nearest> nearest_to_cone(const Core& a, const std::string& angle, co
     };
     const std::string gap =
         beside_tip(fmt::format("norm({})", tip), fmt::format("norm({0})*cos({1}) - {2}*sin({1})", w, angle, h));
-    const std::string n = beside_tip(fmt::format("unit({})", tip),
-                                     fmt::format("cos({0})*unit({1}) - sin({0})*{2}", angle, w, cone.axis));
+    const std::string n =
+        beside_tip(fmt::format("unit({})", tip), fmt::format("cos({0})*unit({1}) - sin({0})*{2}", angle, w, cone.axis));
     return {{gap, n, a.centre, fmt::format("({} - {}*{})", a.centre, gap, n)}};
   }
   if (a.kind == Core::Kind::point)
@@ -146,8 +145,8 @@ std::vector<Nearest> nearest_to_cone(const Core& a, const std::string& angle, co
   const std::string k = name(fmt::format("dot({}, {})*tan({})", a.axis, cone.axis, angle));
   const std::string plane = name(fmt::format("cross({}, {})", u, w));
   const std::string length = name(fmt::format("sqrt(dot({0}, {0}) + 1e-30*{1}^2)", plane, a.radius));
-  const std::string lowest = name(
-      fmt::format("({0}*{1}/sqrt(max({2} - {0}^2, {4})) - {3})/max({2}, {4})", k, length, A, B, parallel));
+  const std::string lowest =
+      name(fmt::format("({0}*{1}/sqrt(max({2} - {0}^2, {4})) - {3})/max({2}, {4})", k, length, A, B, parallel));
   const std::string end = fmt::format("sign({})*{}/2", k, a.size);
   const std::string s = name(clamp(fmt::format("if({0} - {1}^2 > {2}, {3}, {4})", A, k, parallel, lowest, end), a));
   const std::string t = name(clamp(fmt::format("dot({}, {} - {})", a.axis, apex, a.centre), a));

@@ -30,8 +30,8 @@ struct Names {
 
 /// The place where two shapes are nearest to one another.
 struct Nearest {
-  std::string gap;     // the distance; negative for shapes that overlap a little
-  std::string normal;  // unit vector to the side of the first shape
+  std::string gap;         // the distance; negative for shapes that overlap a little
+  std::string normal;      // unit vector to the side of the first shape
   std::string own, other;  // positions: points of the first shape and of the second
 };
 

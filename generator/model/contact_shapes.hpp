@@ -94,8 +94,8 @@ struct Obstacle {
   std::vector<Nearest> (*nearest)(const Core& core, const std::vector<std::string>& values, Names& names);
 };
 
-/// The expression with the names x and y replaced by the position of a particle along E1 and E2.
-inline std::string at_particle(const std::string& expression, const std::string& particle) {
+/// The expression with other expressions for the names x and y.
+inline std::string at_position(const std::string& expression, const std::string& x, const std::string& y) {
   const auto starts = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   const auto continues = [&](char c) { return starts(c) || (c >= '0' && c <= '9') || c == '_'; };
   std::string result;
@@ -107,7 +107,7 @@ inline std::string at_particle(const std::string& expression, const std::string&
     std::size_t end = i;  // of a number or of a name with its parts, such as P.e1
     while (end < expression.size() && (continues(expression[end]) || expression[end] == '.')) ++end;
     const std::string word = expression.substr(i, end - i);
-    result += word == "x" || word == "y" ? fmt::format("dot({}, E{})", particle, word == "x" ? 1 : 2) : word;
+    result += word == "x" ? x : word == "y" ? y : word;
     i = end;
   }
   return result;
@@ -115,7 +115,8 @@ inline std::string at_particle(const std::string& expression, const std::string&
 
 /// The height of a particle or point above the surface z = f(x, y).
 inline std::string height_above(const std::string& f, const std::string& particle) {
-  return fmt::format("dot({}, E3) - {}", particle, at_particle(f, particle));
+  return fmt::format("dot({}, E3) - {}", particle,
+                     at_position(f, fmt::format("dot({}, E1)", particle), fmt::format("dot({}, E2)", particle)));
 }
 
 inline const std::array<Obstacle, 5>& obstacles() {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A [[contact]] and the constraints that it stands for. In: the table as written. Out: entries of [[constraint]] and
-// [[point]].
+// A [[contact]] and the constraints that it stands for. In: the table as written. Out: entries of other sections.
 #pragma once
 
 #include <fmt/format.h>
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,7 +16,8 @@ namespace eomgen::model {
 
 /// The sections that contacts become.
 struct Sections {
-  std::vector<Value> constraints, points;
+  std::vector<Value> constraints, points, events;
+  std::vector<Entry> coordinates;
 };
 
 /// A text that eomgen writes; an error points to `at`.
@@ -26,7 +27,13 @@ Value empty_table(const Value& at);
 class ContactTable {
  public:
   ContactTable(const Source& source, const Value& root, const Value& table, Sections& sections)
-      : source_(source), root_(root), table_(table), constraints_(sections.constraints), points_(sections.points) {}
+      : source_(source),
+        root_(root),
+        table_(table),
+        constraints_(sections.constraints),
+        points_(sections.points),
+        events_(sections.events),
+        coordinates_(sections.coordinates) {}
   void expand();
 
  private:
@@ -66,7 +73,7 @@ class ContactTable {
   /// The contact of a body where it is nearest to another body or to an obstacle.
   void add_nearest(const Value& at, const std::string& suffix, const Value& body, const Value& on,
                    const Nearest& nearest, const Names& names, const std::vector<Value>& at_rest);
-  /// A point on the surface z = f(x, y), from above.
+  /// On the surface z = f(x, y), from above.
   void add_on_surface(const Value& at, const std::string& suffix, const Core& core, const std::string& f);
   void points(const Value& value);
   void corners(const Value& value);
@@ -78,6 +85,21 @@ class ContactTable {
   void shape(const Value& value);
   /// The values of an obstacle: of its key, then of the further ones.
   std::vector<std::string> values_of(const Value& on, const Obstacle& kind) const;
+
+  // expand_tracked_contacts.cpp
+  /// The nearest points, and their gap, of a core.
+  using Approach = std::function<std::vector<Nearest>(const Core&, Names&)>;
+  /// Coordinates that `equations` determine; the point is nearest while `room` is positive.
+  void follow(const Value& at, const std::string& name, const std::vector<std::string>& equations,
+              const std::string& room);
+  /// The end of a run where one of the heights falls below the limit.
+  void stop_below(const Value& at, const std::string& name, const std::vector<std::string>& heights,
+                  const std::string& limit);
+  void foot_of(const Value& at, const std::string& name, const std::string& f);
+  void ball_on_surface(const Value& at, const std::string& suffix, const Core& ball, const std::string& f);
+  void capsule_on_surface(const Value& at, const Core& capsule, const std::string& f);
+  void rim(const Value& at, const Core& disk, const Approach& approach, const std::vector<Value>& at_rest);
+  void rim_on_surface(const Value& at, const Core& disk, const std::string& f);
 
   /// The only entry of a table that names one of the kinds of `all`. further: other keys of that kind.
   template <class Kinds>
@@ -97,6 +119,8 @@ class ContactTable {
   const Value& table_;
   std::vector<Value>& constraints_;
   std::vector<Value>& points_;
+  std::vector<Value>& events_;
+  std::vector<Entry>& coordinates_;
   std::string name_;
 };
 

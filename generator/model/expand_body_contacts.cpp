@@ -21,7 +21,9 @@ const Value& ContactTable::body() const {
   return name;
 }
 
-const Value& ContactTable::on() const { return require("on", "add on = \"ground\", a plane, an obstacle, or another body"); }
+const Value& ContactTable::on() const {
+  return require("on", "add on = \"ground\", a plane, an obstacle, or another body");
+}
 
 bool ContactTable::is_body(const std::string& name) const {
   const Value* bodies = root_.find("body");
@@ -55,26 +57,35 @@ void ContactTable::add_point(const Value& at, const std::string& suffix, const s
 
 void ContactTable::add_core(const Value& at, const std::string& suffix, const Core& core) {
   const Value& on = this->on();
-  Names names;
   std::vector<Value> at_rest;
-  std::vector<Nearest> found;
+  Approach approach;
   std::string what;
   if (on.is(Value::Kind::text)) {
     const Value& shape = require("shape_b", "add shape_b = { sphere = \"S\" }, the shape of the body in 'on'");
     what = "the shape in 'shape_b'";
     if (const Value* radius = shape.is(Value::Kind::table) ? shape.find("hollow") : nullptr) {
-      found = nearest_to_hollow(core, on.text, expression(*radius, "the radius"), names);
+      approach = [size = expression(*radius, "the radius"), centre = on.text](const Core& a, Names& names) {
+        return nearest_to_hollow(a, centre, size, names);
+      };
     } else {
-      found = nearest_of_cores(core, core_of(shape, on.text), names);
+      approach = [other = core_of(shape, on.text)](const Core& a, Names& names) {
+        return nearest_of_cores(a, other, names);
+      };
     }
   } else {
+    if (const Value* shape = table_.find("shape_b")) fail(*shape, "gives shape_b, and 'on' is no body", "remove it");
     const Obstacle& kind = kind_of(on, obstacles(), "obstacle");
     what = fmt::format("a {}", kind.name);
     const std::vector<std::string> values = values_of(on, kind);
     if (kind.nearest == nullptr) return add_on_surface(at, suffix, core, values[0]);
     for (const std::string& value : values) at_rest.push_back(text_value(on, value));
-    found = kind.nearest(core, values, names);
+    approach = [&kind, values](const Core& a, Names& names) { return kind.nearest(a, values, names); };
   }
+  Names names, unused;
+  const std::vector<Nearest> found = approach(core, names);
+  const bool has_rim =
+      core.kind == Core::Kind::disk && !approach({Core::Kind::point, core.centre, "0", "", ""}, unused).empty();
+  if (found.empty() && has_rim) return rim(at, core, approach, at_rest);
   if (found.empty()) refuse_pair(at, what);
   std::size_t count = 0;
   for (const Nearest& nearest : found)
@@ -83,12 +94,12 @@ void ContactTable::add_core(const Value& at, const std::string& suffix, const Co
 
 void ContactTable::refuse_pair(const Value& at, const std::string& what) const {
   fail(at, fmt::format("has a shape whose distance from {} has no closed form, or is 0 while they pass", what),
-       "a point touches shapes with a radius, a disk touches planes, spheres and hollow spheres, a capsule also "
-       "capsules, cylinders and cones: make a shape of several contacts");
+       "a point touches shapes with a radius, a disk touches spheres, and with its rim capsules; of pairs of shapes "
+       "give a disk in 'shape' and the other one in 'shape_b'");
 }
 
 void ContactTable::add_nearest(const Value& at, const std::string& suffix, const Value& body, const Value& on,
-                 const Nearest& nearest, const Names& names, const std::vector<Value>& at_rest) {
+                               const Nearest& nearest, const Names& names, const std::vector<Value>& at_rest) {
   const bool rests = !on.is(Value::Kind::text);
   Value parts = empty_table(at), rest;
   for (const auto& [name, text] : names.named) parts.entries.push_back({name, at.span, text_value(at, text)});
@@ -110,7 +121,9 @@ void ContactTable::add_nearest(const Value& at, const std::string& suffix, const
 }
 
 void ContactTable::add_on_surface(const Value& at, const std::string& suffix, const Core& core, const std::string& f) {
-  if (core.kind != Core::Kind::point || core.radius != "0") refuse_pair(at, "a surface");
+  if (core.kind == Core::Kind::segment) return capsule_on_surface(at, core, f);
+  if (core.kind == Core::Kind::disk) return rim_on_surface(at, core, f);
+  if (core.radius != "0") return ball_on_surface(at, suffix, core, f);
   const std::string name = name_ + "_" + suffix + "_point";
   Value point = empty_table(at);
   point.entries.push_back({"name", at.span, text_value(at, name)});
@@ -146,8 +159,7 @@ std::string ContactTable::normal_of(const Value& on) const {
   if (on.is(Value::Kind::text) && on.text == "ground") return "E3";
   const Value* normal = on.is(Value::Kind::table) ? on.find("normal") : nullptr;
   if (normal == nullptr)
-    fail(on, "has a shape, which touches planes",
-         "write on = \"ground\", or on = { point = \"..\", normal = \"..\" }");
+    fail(on, "has a shape, which touches planes", "write on = \"ground\", or on = { point = \"..\", normal = \"..\" }");
   return "unit(" + expression(*normal, "the normal") + ")";
 }
 
@@ -195,13 +207,12 @@ std::vector<std::string> ContactTable::values_of(const Value& on, const Obstacle
     values.push_back(expression(*further, fmt::format("the {}", key)));
   }
   for (const Entry& entry : on.entries) {
-    const bool known = entry.key == kind.name ||
-                       std::find(kind.further.begin(), kind.further.end(), entry.key) != kind.further.end();
+    const bool known =
+        entry.key == kind.name || std::find(kind.further.begin(), kind.further.end(), entry.key) != kind.further.end();
     if (!known)
       source_.fail(entry.span, fmt::format("a {} in contact has no key {}", kind.name, quote(entry.key)),
-                   kind.further.empty()
-                       ? "remove it"
-                       : fmt::format("its keys are {}, {}", kind.name, fmt::join(kind.further, ", ")));
+                   kind.further.empty() ? "remove it"
+                                        : fmt::format("its keys are {}, {}", kind.name, fmt::join(kind.further, ", ")));
   }
   return values;
 }

@@ -252,6 +252,13 @@ void expand_contacts(const Source& source, Value& root) {
   root.entries.erase(found);
   append(root, "constraint", span, std::move(sections.constraints));
   append(root, "point", span, std::move(sections.points));
+  append(root, "event", span, std::move(sections.events));
+  if (sections.coordinates.empty()) return;
+  if (root.find("coordinates") == nullptr) root.entries.push_back({"coordinates", span, Value{}});
+  for (Entry& entry : root.entries) {
+    if (entry.key == "coordinates")
+      std::move(sections.coordinates.begin(), sections.coordinates.end(), std::back_inserter(entry.value.entries));
+  }
 }
 
 }  // namespace eomgen::model
