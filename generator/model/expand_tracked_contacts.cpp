@@ -22,9 +22,7 @@ struct Foot {
     square = fmt::format("(1 + {}^2 + {}^2)", slope_x, slope_y);
   }
   std::string position() const { return fmt::format("({}*E1 + {}*E2 + {}*E3)", x, y, f); }
-  std::string normal() const {
-    return fmt::format("(E3 - {}*E1 - {}*E2)/sqrt({})", slope_x, slope_y, square);
-  }
+  std::string normal() const { return fmt::format("(E3 - {}*E1 - {}*E2)/sqrt({})", slope_x, slope_y, square); }
   /// Whether both radii of curvature of the hollow are larger than R: I + R dN/d(x, y) has positive eigenvalues. Their
   /// product.
   std::string room(const std::string& R) const {
@@ -90,7 +88,8 @@ void ContactTable::foot_of(const Value& at, const std::string& name, const std::
   points_.push_back(std::move(point));
 }
 
-// The ball is R N above its foot S in the plane of E1 and E2; the gap is along N where that holds, as B - S = R N + g E3.
+// The ball is R N above its foot S in the plane of E1 and E2; the gap is along N where that holds, as B - S = R N + g
+// E3.
 void ContactTable::ball_on_surface(const Value& at, const std::string& suffix, const Core& ball, const std::string& f) {
   const std::string name = name_ + "_" + suffix;
   const Foot foot(f, name);

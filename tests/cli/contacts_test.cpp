@@ -124,7 +124,12 @@ TEST_CASE("shapes: unknown kinds, wrong sizes and missing keys are refused with 
   refused(falling("torus = \"R\""), "names no shape");
   refused(falling("capsule = \"R\""), "gives the sizes of the capsule as");
   refused(falling("capsule = [\"R\"]"), "gives 1 sizes of the capsule");
-  refused(falling("sphere = \"R\"", "\"B\""), "has a shape, which touches planes");
+  refused(falling("sphere = \"R\"", "\"B\""), "has no shape_b");
+  refused(falling("sphere = \"R\"", "\"B\"\nshape_b = { sphere = 1 }"), "cannot touch itself");
+  refused(falling("cylinder = [\"R\", \"L\"]", "{ sphere = 1, centre = \"-E3\" }"), "touches planes only");
+  refused(falling("disk = \"R\"", "\"B\"\nshape_b = { disk = 1 }"), "no closed form");
+  refused(falling("sphere = \"R\"", "{ sphere = 1, centre = \"t*E3\" }\nfriction = { static = 1, dynamic = 1 }"),
+          "an obstacle with friction");
 }
 
 namespace {
