@@ -113,10 +113,9 @@ void add_velocity_form(const Mechanics& m, Lowering& lower, Constraint& result) 
   }
 }
 
-// The contact point must stay on both surfaces in any motion.
+// The contact point must stay on both surfaces in any motion. Those of shapes do (model/contact_nearest.hpp).
 void check_contact(const Mechanics& m, Lowering& lower, const model::Constraint& constraint) {
   const model::BodyContact& contact = *constraint.contact;
-  if (contact.is_nearest) return;
   const auto refuse = [&](const std::string& what, const char* remedy) {
     throw Error("mechanics", m.model->where(constraint.span), what, remedy);
   };
@@ -131,7 +130,7 @@ void check_contact(const Mechanics& m, Lowering& lower, const model::Constraint&
            "give the vectors to where they touch for all positions (of spheres along unit(A - B)), and in 'normal' the "
            "direction across both surfaces there");
   }
-  if (plane) return;
+  if (plane || contact.offset == model::no_node) return;
   const Vec3 offset = lower.vector(contact.offset);
   if (!vanishes(*m.dag, {offset[0], offset[1], offset[2]})) {
     refuse("'at' and 'at_b' of '" + constraint.name + "' lead to points that lie beside one another",

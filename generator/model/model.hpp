@@ -191,7 +191,6 @@ struct BodyContact {
   std::vector<NodeId> normal_velocity;               // per body: 0 if the point of contact stays on its surface
   NodeId offset = no_node;  // vector: 0 if the points of contact of both bodies are on a common normal
   bool rolling = false;     // given as rolling = { .. }
-  bool is_nearest = false;  // by the shapes of a [[contact]]: the points are right for all positions
 };
 
 /// A coupling of the rotations of two bodies: gear = { .. } between bodies.

@@ -16,7 +16,6 @@ bool ContactsReader::touches_body(const Value& on) {
 // The geometry is right for all positions by its construction (contact_nearest.hpp). Obstacles are at rest.
 std::string ContactsReader::nearest_points(BodyContact& contact, const Value& table,
                                            std::map<std::string, TypedNode>& local) {
-  contact.is_nearest = true;
   const Value& on = *table.find("on");
   if (touches_body(on)) other_body(contact, on, local);
   const Context any{"a contact", on_motion, Shape::either, std::nullopt, ""};

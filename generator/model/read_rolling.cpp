@@ -190,9 +190,10 @@ void ContactsReader::read_contact_point(Constraint& constraint, const Value& tab
   };
   contact.slip = read("v + cross(w, p) - V", Shape::vector);
   contact.tangential_velocity = read("ddt(p) - cross(w, p)", Shape::vector);
+  if (local.contains("pb")) contact.other_arm = local.at("pb").node;
+  if (local.contains("gap")) return;
   // The point of contact may move over the body, but not along the normal: it would then not be the point of contact.
   contact.normal_velocity.push_back(read("dot(ddt(p) - cross(w, p), n)", Shape::scalar));
-  if (local.contains("pb")) contact.other_arm = local.at("pb").node;
   if (contact.other_frame == 0) return;
   contact.normal_velocity.push_back(read("dot(ddt(pb) - cross(wb, pb), n)", Shape::scalar));
   contact.offset = read("x + p - o - dot(x + p - o, n)*n", Shape::vector);
