@@ -6,7 +6,8 @@
 namespace eomgen::model {
 namespace {
 
-// Below these squares of sines directions count as parallel. Every point is then as near as another up to rounding.
+// Added to squares of sines, which keeps parallel directions defined. Below it every point is as near as another up to
+// rounding. A sum has no kink.
 constexpr const char* parallel = "1e-14";
 
 std::string clamp(const std::string& x, const Core& segment) {
@@ -46,7 +47,7 @@ std::vector<Nearest> nearest_of_segments(const Core& a, const Core& b, Names& na
   const std::string cosine = name(fmt::format("dot({}, {})", a.axis, b.axis));
   const std::string both = name(fmt::format("cross({}, {})", a.axis, b.axis));
   const std::string on_lines =
-      name(fmt::format("({0}*{1} - {2})/max(dot({3}, {3}), {4})", cosine, along_v, along_u, both, parallel));
+      name(fmt::format("({0}*{1} - {2})/(dot({3}, {3}) + {4})", cosine, along_v, along_u, both, parallel));
   const std::string t = name(clamp(fmt::format("{}*{} + {}", cosine, clamp(on_lines, a), along_v), b));
   const std::string s = name(clamp(fmt::format("{}*{} - {}", cosine, t, along_u), a));
   return {by_cores(name(along(a, s)), name(along(b, t)), a.radius, b.radius, name)};
@@ -113,7 +114,7 @@ std::vector<Nearest> nearest_to_cylinder(const Core& a, const std::string& radiu
   std::string own = a.centre;
   if (a.kind == Core::Kind::segment) {
     const std::string u = name(across(a.axis, unit)), w = name(fmt::format("{} - {}", a.centre, point));
-    own = name(along(a, clamp(fmt::format("-dot({0}, {1})/max(dot({0}, {0}), {2})", u, w, parallel), a)));
+    own = name(along(a, clamp(fmt::format("-dot({0}, {1})/(dot({0}, {0}) + {2})", u, w, parallel), a)));
   }
   const std::string on_axis = name(fmt::format("{1} + dot({0} - {1}, {2})*{2}", own, point, unit));
   return {by_cores(own, on_axis, a.radius, radius, name)};
