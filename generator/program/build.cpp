@@ -60,10 +60,11 @@ PolynomialGraph as_derived(const AbiFunctions& functions, const FunctionExpressi
   return from_dag(*system.dag, wanted, system.free, system.state_symbols());
 }
 
-/// The function as derived, and the function with small products expanded.
-std::vector<PolynomialGraph> starts(const PolynomialGraph& graph) {
+/// The function as derived, which `flat` is tested, and the function with small products expanded.
+std::vector<PolynomialGraph> starts(const PolynomialGraph& graph, PolynomialGraph flat) {
   constexpr std::size_t max_expanded_nodes = 3000;  // nodes; larger systems do not benefit
-  std::vector<PolynomialGraph> result = {tested(flatten(graph, false))};
+  std::vector<PolynomialGraph> result;
+  result.push_back(std::move(flat));
   if (graph.size() < max_expanded_nodes) result.push_back(tested(flatten(expand(graph), false)));
   return result;
 }
@@ -119,7 +120,7 @@ std::vector<Candidate> raw_candidates(const std::vector<system::EquationSystem>&
   return result;
 }
 
-/// Optimises the cheap candidates and returns the index of the best.
+/// Optimises the cheap candidates, each graph once, and returns the index of the best.
 std::size_t choose(std::vector<Candidate>& candidates) {
   std::size_t cheapest = candidates[0].raw_cost;
   for (const Candidate& candidate : candidates) cheapest = std::min(cheapest, candidate.raw_cost);
@@ -127,8 +128,11 @@ std::size_t choose(std::vector<Candidate>& candidates) {
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     Candidate& candidate = candidates[i];
     if (static_cast<double>(candidate.raw_cost) > max_cost_ratio * static_cast<double>(cheapest)) continue;
-    candidate.starts = starts(candidate.raw);
-    candidate.best = optimised(candidate.starts);
+    candidate.starts = starts(candidate.raw, std::move(candidate.best));
+    const auto here = candidates.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto same =
+        std::find_if(candidates.begin(), here, [&](const Candidate& c) { return c.starts == candidate.starts; });
+    candidate.best = same == here ? optimised(candidate.starts) : same->best;
     candidate.operations = count_operations(candidate.best);
     if (!best || candidate.operations.cost() < candidates[*best].operations.cost()) best = i;
   }
@@ -336,12 +340,13 @@ class Derivatives {
       for (const std::unique_ptr<AbiFunctions>& other : others_) ways_.push_back(other.get());
     }
     std::vector<FunctionExpressions> wanted;
-    std::vector<PolynomialGraph> raw;
+    std::vector<PolynomialGraph> raw, flat;
     std::vector<std::size_t> costs;
     const auto add = [&](AbiFunctions& functions, const Way& way) {
       wanted.push_back(function_expressions(functions, name, request_, way));
       raw.push_back(as_derived(functions, wanted.back()));
-      costs.push_back(count_operations(tested(flatten(raw.back(), false))).cost());
+      flat.push_back(tested(flatten(raw.back(), false)));
+      costs.push_back(count_operations(flat.back()).cost());
     };
     for (AbiFunctions* functions : ways_) {
       if (functions->has_forces() && !uses_forces(name)) continue;
@@ -353,10 +358,14 @@ class Derivatives {
     const bool has_many = is_product(name) || is_value_jacobian(name);
     const double largest = (has_many ? 1 : max_cost_ratio) * static_cast<double>(least);
     std::optional<PolynomialGraph> best;
+    std::vector<std::vector<PolynomialGraph>> tried;
     std::size_t best_cost = 0, which = 0;
     for (std::size_t i = 0; i < wanted.size(); ++i) {
       if (static_cast<double>(costs[i]) > largest) continue;
-      PolynomialGraph graph = optimised(starts(raw[i]));
+      std::vector<PolynomialGraph> graphs = starts(raw[i], std::move(flat[i]));
+      if (std::find(tried.begin(), tried.end(), graphs) != tried.end()) continue;
+      tried.push_back(std::move(graphs));
+      PolynomialGraph graph = optimised(tried.back());
       const std::size_t cost = count_operations(graph).cost();
       if (best && cost >= best_cost) continue;
       best = std::move(graph);
@@ -420,8 +429,9 @@ Program build_program(std::vector<system::EquationSystem>& systems, const Reques
   program.holonomic = system.holonomic;
   program.functions.push_back(finished(chosen.best, chosen.rhs));
   const auto add = [&](const FunctionExpressions& wanted) {
-    const std::vector<PolynomialGraph> graphs = starts(as_derived(*chosen.functions, wanted));
-    program.functions.push_back(finished(request.optimise ? optimised(graphs) : graphs[0], wanted));
+    const PolynomialGraph raw = as_derived(*chosen.functions, wanted);
+    PolynomialGraph flat = tested(flatten(raw, false));
+    program.functions.push_back(finished(request.optimise ? optimised(starts(raw, std::move(flat))) : flat, wanted));
   };
   Derivatives derivatives(systems, request, *chosen.functions);
   for (const std::string& name : with_values(request.with)) {

@@ -4,6 +4,7 @@
 // seconds, so that the same graph gives the same program everywhere.
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "program/polynomials.hpp"
 
@@ -45,14 +46,18 @@ PolynomialGraph optimise(const std::vector<PolynomialGraph>& starts) {
   // Programs with tens of operations are tried in many orders, programs with thousands in one order per start.
   constexpr std::size_t budget = 4000, most = 12;
   std::optional<CostedGraph> best;
+  std::vector<std::pair<PolynomialGraph, std::uint64_t>> tried;  // and in how many orders
   for (const PolynomialGraph& start : starts) {
     const std::size_t orders = std::clamp<std::size_t>(budget / (count_operations(start).flops() + 1), 1, most);
     for (const bool inline_products : {false, true}) {
       CostedGraph flat{flatten(start, inline_products), 0};
       flat.cost = count_operations(flat.graph).cost();
-      for (std::uint64_t seed = 0; seed < orders; ++seed) {
+      // Without products to expand or to merge, several starts are the same graph.
+      auto same = std::find_if(tried.begin(), tried.end(), [&](const auto& t) { return t.first == flat.graph; });
+      if (same == tried.end()) same = tried.insert(same, {flat.graph, 0});
+      for (std::uint64_t& seed = same->second; seed < orders; ++seed) {
         CostedGraph found = descend(flat, seed);
-        if (!best || best->cost == 0 || found.cost < best->cost) best = std::move(found);
+        if (!best || found.cost < best->cost) best = std::move(found);
       }
     }
   }

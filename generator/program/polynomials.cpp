@@ -5,6 +5,7 @@
 #include <cln/rational.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "symbolic/small_numbers.hpp"
 
@@ -158,14 +159,20 @@ bool PolynomialGraph::is_trig(NodeId id) const {
 }
 
 std::vector<NodeId> PolynomialGraph::topological_order() const {
-  std::vector<NodeId> result, trig;
-  DepthFirstTraversal(*this).visit_results([&](NodeId id) {
-    if (is_trig(id)) trig.push_back(id);
-  });
-  const auto keep = [&](NodeId id) { result.push_back(id); };
+  std::vector<NodeId> all, result;
+  DepthFirstTraversal(*this).visit_results([&](NodeId id) { all.push_back(id); });
+  result.reserve(all.size());
+  std::vector<bool> is_taken(size(), false);
   DepthFirstTraversal traversal(*this);
-  for (const NodeId id : trig) traversal.visit(id, keep);
-  traversal.visit_results(keep);
+  for (const NodeId trig : all) {
+    if (!is_trig(trig)) continue;
+    traversal.visit(trig, [&](NodeId id) {
+      is_taken[id] = true;
+      result.push_back(id);
+    });
+  }
+  // The operands of a node that is taken are taken too, so the others keep their order.
+  std::copy_if(all.begin(), all.end(), std::back_inserter(result), [&](NodeId id) { return !is_taken[id]; });
   return result;
 }
 

@@ -45,16 +45,19 @@ struct Node {
   symbolic::Op op = symbolic::Op::add;  // call
   Operand leaf;                         // leaf
   std::vector<Term> terms;              // call: its arguments; sum: its summands
+  friend bool operator==(const Node&, const Node&) = default;
 };
 
 /// A name for a value if the value survives optimisation; sections keep their order.
 struct Label {
   Term value;
   std::string name, section;
+  friend bool operator==(const Label&, const Label&) = default;
 };
 
 struct PivotPair {
   Term pivot, scale;  // scale 0: the pivot must not be exactly zero
+  friend bool operator==(const PivotPair&, const PivotPair&) = default;
 };
 
 /// An index of nodes by hash. Nodes with equal hashes keep their order of insertion.
@@ -124,6 +127,12 @@ class PolynomialGraph {
   std::vector<PivotPair> pivots;
   std::vector<Label> labels;
   std::uint32_t coordinates = 0;  // x[0 .. coordinates) are coordinates, as many rates follow
+
+  /// Whether every node is the same: graphs of the same value may differ.
+  friend bool operator==(const PolynomialGraph& a, const PolynomialGraph& b) {
+    return a.nodes_ == b.nodes_ && a.results == b.results && a.pivots == b.pivots && a.labels == b.labels &&
+           a.coordinates == b.coordinates;
+  }
 
  private:
   NodeId add(std::uint64_t hash, Node node);
