@@ -11,10 +11,9 @@
 #include <memory>
 
 #include "model/model.hpp"
-#include "program/abi_values.hpp"
 #include "program/build.hpp"
 #include "program/interpret.hpp"
-#include "verify/certificate.hpp"
+#include "program_certificate.hpp"
 
 using namespace eomgen;
 
@@ -95,34 +94,7 @@ Frames frames_of(const std::string& text, const std::function<void(symbolic::Dag
 }
 
 verify::Certificate certificate_of(const Frames& frames) {
-  verify::Subjects subjects;
-  subjects.systems = frames.systems;
-  const auto arguments = [](const verify::AbiArguments& at) {
-    program::AbiArguments converted;
-    converted.at.t = at.t, converted.at.x = at.x, converted.at.p = at.p, converted.at.u = at.u;
-    converted.at.mode = at.mode;
-    converted.order = at.order;
-    return converted;
-  };
-  verify::ProgramForm form;
-  form.name = "program";
-  form.functions = {"rhs", "frames"};
-  form.formulation = frames.program.formulation;
-  form.approach = frames.program.approach;
-  form.call = [&frames, arguments](const std::string& function, const verify::AbiArguments& at, int digits) {
-    return program::abi_values(frames.program, function, arguments(at), digits);
-  };
-  form.bounds = [&frames, arguments](const std::string& function, const verify::AbiArguments& at) {
-    return program::abi_error_bounds(frames.program, function, arguments(at));
-  };
-  form.rhs = [call = form.call](const verify::Real& t, const std::vector<verify::Real>& x,
-                                const std::vector<verify::Real>& p, const std::vector<verify::Real>& u,
-                                const std::vector<int>& mode) {
-    const auto values = call("rhs", {t, x, p, u, mode}, 60);
-    return values ? values->front() : std::vector<verify::Real>{};
-  };
-  subjects.programs.push_back(std::move(form));
-  return verify::certify(*frames.mechanics, subjects, {50, 3, 1});
+  return test::certify_program(*frames.mechanics, frames.systems, frames.program, {"rhs", "frames"});
 }
 
 bool agrees(const verify::Certificate& certificate, const std::string& what) {

@@ -11,10 +11,9 @@
 
 #include "derive/frames.hpp"
 #include "model/model.hpp"
-#include "program/abi_values.hpp"
 #include "program/build.hpp"
 #include "program/interpret.hpp"
-#include "verify/certificate.hpp"
+#include "program_certificate.hpp"
 
 using namespace eomgen;
 
@@ -89,34 +88,8 @@ Functions functions_of(const std::string& text, const InertiaChange& change = nu
 }
 
 verify::Certificate certificate_of(const Functions& functions) {
-  verify::Subjects subjects;
-  subjects.systems = functions.systems;
-  const auto arguments = [](const verify::AbiArguments& at) {
-    program::AbiArguments converted;
-    converted.at.t = at.t, converted.at.x = at.x, converted.at.p = at.p, converted.at.u = at.u, converted.at.v = at.v;
-    converted.at.mode = at.mode;
-    converted.order = at.order;
-    return converted;
-  };
-  verify::ProgramForm form;
-  form.name = "program";
-  form.functions = {"rhs", "regressor", "momentum", "inverse"};
-  form.formulation = functions.program.formulation;
-  form.approach = functions.program.approach;
-  form.call = [&functions, arguments](const std::string& function, const verify::AbiArguments& at, int digits) {
-    return program::abi_values(functions.program, function, arguments(at), digits);
-  };
-  form.bounds = [&functions, arguments](const std::string& function, const verify::AbiArguments& at) {
-    return program::abi_error_bounds(functions.program, function, arguments(at));
-  };
-  form.rhs = [call = form.call](const verify::Real& t, const std::vector<verify::Real>& x,
-                                const std::vector<verify::Real>& p, const std::vector<verify::Real>& u,
-                                const std::vector<int>& mode) {
-    const auto values = call("rhs", {t, x, p, u, mode}, 60);
-    return values ? values->front() : std::vector<verify::Real>{};
-  };
-  subjects.programs.push_back(std::move(form));
-  return verify::certify(*functions.mechanics, subjects, {50, 3, 1});
+  return test::certify_program(*functions.mechanics, functions.systems, functions.program,
+                               {"rhs", "regressor", "momentum", "inverse"});
 }
 
 bool is_confirmed(const verify::Certificate& certificate, const std::string& what) {
