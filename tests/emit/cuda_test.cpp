@@ -21,6 +21,24 @@ std::vector<std::string> write(const Example& e, const Folder& folder) {
   return names;
 }
 
+/// Compiles a program, or with `-c` an object, with the runtime.
+std::string diagnostics(const std::vector<std::string>& options, const std::vector<std::string>& files) {
+  std::vector<std::string> command{EOMGEN_TEST_CXX, "-std=c++20", "-O0", "-ffp-contract=off", "-I" EOMGEN_TEST_LIB};
+  command.insert(command.end(), options.begin(), options.end());
+  return compiler_diagnostics(command, files);
+}
+
+/// The object of eom::integrate, compiled once.
+const std::string& runtime_object() {
+  static const Folder folder;
+  static const std::string object = [] {
+    std::string path = folder.path + "/runtime.o";
+    CHECK(diagnostics({"-c", "-o", path}, {EOMGEN_TEST_CUDA_HARNESS}) == "");
+    return path;
+  }();
+  return object;
+}
+
 std::string wrong_kernel(const Example& e) {
   const Folder folder;
   write(e, folder);
@@ -28,10 +46,9 @@ std::string wrong_kernel(const Example& e) {
   const std::string of_c = compiler_diagnostics(
       {EOMGEN_TEST_CC, "-std=c11", "-O1", "-ffp-contract=off", "-c", "-o", path + ".o"}, {path + ".c"});
   if (!of_c.empty()) return of_c;
-  const std::string said = compiler_diagnostics(
-      {EOMGEN_TEST_CXX, "-std=c++20", "-O0", "-ffp-contract=off", "-o", folder.path + "/use", "-DNAME=" + name,
-       "-I" + folder.path, "-I" EOMGEN_TEST_LIB},
-      {"-x", "c++", path + "_ensemble.cu", EOMGEN_TEST_CUDA_HARNESS, "-x", "none", path + ".o", "-lm"});
+  const std::string said = diagnostics({"-o", folder.path + "/use", "-DNAME=" + name, "-I" + folder.path},
+                                       {"-x", "c++", path + "_ensemble.cu", EOMGEN_TEST_CUDA_HARNESS, "-x", "none",
+                                        path + ".o", runtime_object(), "-lm"});
   if (!said.empty()) return said;
   const emit::ProcessResult finished = emit::run_process({folder.path + "/use"});
   return finished.status == 0 ? "" : fmt::format("line {} of the harness: {}", finished.status, finished.output);
