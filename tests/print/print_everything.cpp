@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// print_everything MODEL N: prints all formulas in all formats after consuming N serial numbers of GiNaC.
+// print_everything MODEL N: prints all formulas in all formats after consuming N serial numbers of GiNaC, then the
+// document. Each formula is a record that ends with 1E: its approach, name, text, LaTeX and MathML, each with 1F. 1D is
+// before the document.
 #include <ginac/ginac.h>
 
 #include <cstdio>
 #include <cstdlib>
+#include <string>
 
 #include "print/article.hpp"
 #include "print/render.hpp"
@@ -16,12 +19,16 @@ int main(int argc, char** argv) {
     const eomgen::mechanics::Mechanics mechanics = eomgen::mechanics::build_mechanics(model);
     const auto one = eomgen::reading::derive_display_form(mechanics, eomgen::system::Approach::one);
     const auto two = eomgen::reading::derive_display_form(mechanics, eomgen::system::Approach::two);
-    for (const auto& form : {one, two}) {
-      for (const eomgen::print::PrintedFormula& item : eomgen::print::render(mechanics, form, {"all"})) {
-        std::printf("%s|%s|%s|%s\n%s\n%s\n%s\n", item.key.c_str(), item.name.c_str(), item.coordinate.c_str(),
-                    item.role.c_str(), item.text.c_str(), item.latex.c_str(), item.mathml.c_str());
+    for (const auto* form : {&one, &two}) {
+      for (const eomgen::print::PrintedFormula& item : eomgen::print::render(mechanics, *form, {"all"})) {
+        for (const std::string& part :
+             {std::string(form == &one ? "I" : "II"), item.key + " " + item.name + item.coordinate + " " + item.role,
+              item.text, item.latex, item.mathml})
+          std::printf("%s\x1f", part.c_str());
+        std::printf("\x1e");
       }
     }
+    std::printf("\x1d");
     std::printf("%s", eomgen::print::latex_document(mechanics, one, two).c_str());
   } catch (const eomgen::Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
