@@ -190,7 +190,7 @@ struct ComparedLanguage {
 };
 
 const std::vector<ComparedLanguage> languages = {
-    {"rust", {"rustc", "--version"}, "main.rs", rust_program, "rustc --edition 2021 -O -o main main.rs && ./main"},
+    {"rust", {"rustc", "--version"}, "main.rs", rust_program, "rustc --edition 2021 -o main main.rs && ./main"},
     {"octave",
      {"octave-cli", "--norc", "--no-history", "--eval", "1;"},
      "main.m",
@@ -299,7 +299,7 @@ TEST_CASE("languages: start in Rust completes t, x and p as a run does, with eac
   files.push_back({"main.rs", modules + "fn main() {\n" + body + "}\n"});
   emit::write_files(folder.path, files);
   const emit::ProcessResult finished =
-      emit::run_process({"sh", "-c", "cd '" + folder.path + "' && rustc --edition 2021 -o main main.rs && ./main"});
+      emit::run_process({"sh", "-c", "cd '" + folder.path + "' && rustc --edition 2021 -O -o main main.rs && ./main"});
   CAPTURE(finished.output);
   REQUIRE(finished.status == 0);
   std::istringstream lines(finished.output);
