@@ -6,6 +6,8 @@
 #include <limits>
 #include <optional>
 
+#include "run/directional_derivative.hpp"
+
 namespace eomgen::run {
 namespace {
 
@@ -152,8 +154,6 @@ double scale_of_change(VariationalEquations& in, std::size_t kink, double t, con
   return largest;
 }
 
-constexpr double least_jump = 1e-10;  // of f: a smaller jump is rounding
-
 double distance(const Values& a, const Values& b) {
   double largest = 0;
   for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
@@ -170,12 +170,15 @@ bool is_jump(VariationalEquations& in, std::size_t kink, double t, const Values&
   model.set_kink(kink, -1);
   const bool both = in.context.rhs(t, x.data(), below.data()) == 0 && known;
   model.set_mode(mode);
-  double size = 0;
-  for (const double value : above) size = std::max(size, std::abs(value));
-  return !both || distance(above, below) > least_jump * size;
+  return !both || has_jump(above, below);
 }
 
 }  // namespace
+
+bool has_jump(const std::vector<double>& before, const std::vector<double>& after) {
+  constexpr double rounding = 1e-10;  // of f
+  return distance(before, after) > rounding * largest_magnitude(before);
+}
 
 bool differs_beside(VariationalEquations& in, std::size_t kink, double t, const std::vector<double>& x, double span,
                     const std::vector<StateBeside>& beside) {

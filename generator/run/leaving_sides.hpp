@@ -32,4 +32,7 @@ struct StateBeside {
 bool differs_beside(VariationalEquations& in, std::size_t kink, double t, const std::vector<double>& x, double span,
                     const std::vector<StateBeside>& beside);
 
+/// Whether f jumps between its values on the two sides of a surface by more than rounding.
+bool has_jump(const std::vector<double>& before, const std::vector<double>& after);
+
 }  // namespace eomgen::run

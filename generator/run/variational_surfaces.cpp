@@ -2,18 +2,12 @@
 // Surfaces of kinks in variational equations: branches where a motion starts, and crossings.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "run/central_differences.hpp"
 #include "run/variational_jumps.hpp"
 
 namespace eomgen::run {
-namespace {
-
-constexpr double continuous = 1e-10;  // of f: a smaller jump is rounding
-
-}  // namespace
 
 /// The changes of every direction. x: with every s, which are those at times that change by dt.
 std::vector<VariationalJumps::Change> VariationalJumps::changes_at(
@@ -77,9 +71,7 @@ bool VariationalJumps::cross_surface(const eom::EventPoint& point) {
   context.kinks.flip_branch(point.t, point.crossing.function - context.events.first_kink(), point.crossing.up);
   const eom::ModeArray flipped = context.model.mode();
   if (!known || !rhs(point.t, point.x.data(), after)) return true;  // the integration reports it
-  double jump = 0;
-  for (std::size_t i = 0; i < n_; ++i) jump = std::max(jump, std::abs(before[i] - after[i]));
-  if (jump <= continuous * largest_magnitude(before)) return false;
+  if (!has_jump(before, after)) return false;
   for (std::size_t d = 0; d < directions_.size(); ++d) {
     context.model.set_mode(mode);
     const double by = directions_[d].scale * time_change(point.crossing.function, point.t, x, d);
