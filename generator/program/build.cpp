@@ -384,7 +384,8 @@ class Derivatives {
   /// The cheapest form of `jac` with loops, or null.
   std::shared_ptr<const ArrayProgram> loops() {
     const MakeFunction make = [this](const FunctionExpressions& expressions) {
-      return finished(optimised(starts(as_derived(chosen_, expressions))), expressions);
+      const PolynomialGraph raw = as_derived(chosen_, expressions);
+      return finished(optimised(starts(raw, tested(flatten(raw, false)))), expressions);
     };
     std::shared_ptr<const ArrayProgram> result;
     for (AbiFunctions* functions : ways_) {
