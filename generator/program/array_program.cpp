@@ -162,8 +162,7 @@ class Build {
     const auto [found, added] = known_scalars_.try_emplace(r.id, entries().size());
     if (added) entries().push_back(r);
     own_scalars_.push_back(found->second);
-    return dag_.symbol(
-        {SymbolKind::vector, static_cast<std::uint32_t>(first_scalar_ + own_scalars_.size() - 1), 0});
+    return dag_.symbol({SymbolKind::vector, static_cast<std::uint32_t>(first_scalar_ + own_scalars_.size() - 1), 0});
   }
 
   symbolic::Dag& dag_;

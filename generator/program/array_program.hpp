@@ -19,8 +19,8 @@ struct ArrayRun {
   std::size_t from_group = 0, to_group = 0, groups = 1;
 };
 
-/// For k = 0, .., count - 1: work[outputs[i] + k] is the entry i of the first result of `body`. Its argument v has first
-/// work[inputs[j] + k], then scalars[j].
+/// For k = 0, .., count - 1: work[outputs[i] + k] is the entry i of the first result of `body`. Its argument v has
+/// first work[inputs[j] + k], then scalars[j].
 struct ProgramLoop {
   std::size_t count = 0;
   std::vector<std::size_t> inputs, scalars, outputs;
@@ -35,15 +35,15 @@ struct ProgramStep {
 
 struct ArrayProgram {
   Function scalars;
-  std::size_t work = 0;        // entries of the working memory, which is 0 at first
+  std::size_t work = 0;       // entries of the working memory, which is 0 at first
   bool fills_result = false;  // false: entries that nothing writes are 0
   std::vector<ProgramStep> steps;
   Operations loop_operations;  // of all passes
   std::size_t copies = 0;      // entries
 
   std::size_t flops() const { return scalars.operations.flops() + loop_operations.flops(); }
-  /// The cost of straight-line code that takes as long. Operations in loops take a tenth of the time, because processors
-  /// make several passes at once; a copy takes that of two operations.
+  /// The cost of straight-line code that takes as long. Operations in loops take a tenth of the time, because
+  /// processors make several passes at once; a copy takes that of two operations.
   std::size_t cost() const { return scalars.operations.cost() + loop_operations.cost() / 10 + 2 * copies; }
 };
 

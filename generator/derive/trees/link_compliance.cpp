@@ -14,7 +14,6 @@ Mat3 block(const Mat6& a, std::size_t row, std::size_t column) {
   return result;
 }
 
-
 Vec3 plus(Dag& dag, const Vec3& a, const Vec3& b) { return symbolic::add(dag, a, b); }
 
 Vec6 times6(Dag& dag, const Mat6& a, const Vec6& v) {
@@ -44,9 +43,8 @@ Vec6 scaled(Dag& dag, Ref factor, const Vec6& v) {
 Vec6 zero_vector6(const Dag& dag) { return joined(symbolic::zero_vector(dag), symbolic::zero_vector(dag)); }
 
 Vec6 acceleration_at(Dag& dag, const BodyLink& link, const Vec6& A) {
-  return joined(
-      link.rotation.to_own_axes(dag, angular(A)),
-      link.rotation.to_own_axes(dag, plus(dag, linear(A), cross(dag, angular(A), link.offset))));
+  return joined(link.rotation.to_own_axes(dag, angular(A)),
+                link.rotation.to_own_axes(dag, plus(dag, linear(A), cross(dag, angular(A), link.offset))));
 }
 
 Ref take_freedom(Dag& dag, const JointResponse& joint, Ref u, Vec6& A) {
@@ -141,9 +139,9 @@ void LinkCompliance::eliminate_inwards(std::size_t l) {
   const Mat3 force = link.rotation.to_parent(dag_, B.force, false);
   RotatingResponse& to = rotating_[link_number(link.parent)];
   to.force = add(dag_, to.force, force);
-  to.moment = add(dag_, to.moment,
-                  add(dag_, link.rotation.to_parent(dag_, B.moment, false),
-                      product(dag_, cross_matrix(dag_, link.offset), force)));
+  to.moment = add(
+      dag_, to.moment,
+      add(dag_, link.rotation.to_parent(dag_, B.moment, false), product(dag_, cross_matrix(dag_, link.offset), force)));
 }
 
 /// The compliance of a link with its origin moved to that of a link beyond it, along the axes there.
@@ -235,7 +233,8 @@ DisturbanceSource LinkCompliance::by_coordinate(std::size_t l, std::size_t f) {
     source.force[other] = dag_.neg(along(dag_, change.directions[other], wrench));
   const Vec3& s = link.freedoms[f].angular;
   const Vec3 slide = link.rotation.to_own_axes(dag_, change.slide);
-  source.passed = joined(plus(dag_, cross(dag_, s, wrench.moment), cross(dag_, slide, wrench.force)), cross(dag_, s, wrench.force));
+  source.passed =
+      joined(plus(dag_, cross(dag_, s, wrench.moment), cross(dag_, slide, wrench.force)), cross(dag_, s, wrench.force));
   return source;
 }
 
@@ -265,10 +264,10 @@ SourceResponse LinkCompliance::respond(const DisturbanceSource& source) {
   }
   // The rest of the inertia is 0 along the freedoms, so that fewer of its entries are needed than before them.
   const RotatingResponse& rest = rotating_[l];
-  Vec6 p =
-      joined(plus(dag_, plus(dag_, times(dag_, body.I, zeta), times(dag_, body.H, a)), times(dag_, rest.moment, source.omega)),
-             plus(dag_, plus(dag_, times(dag_, transposed(body.H), zeta), times(dag_, body.M, a)),
-                  times(dag_, rest.force, source.omega)));
+  Vec6 p = joined(
+      plus(dag_, plus(dag_, times(dag_, body.I, zeta), times(dag_, body.H, a)), times(dag_, rest.moment, source.omega)),
+      plus(dag_, plus(dag_, times(dag_, transposed(body.H), zeta), times(dag_, body.M, a)),
+           times(dag_, rest.force, source.omega)));
   p = sum(dag_, p, applied);
   p = sum(dag_, p, source.passed);
   Vec6 A = zero_vector6(dag_);
