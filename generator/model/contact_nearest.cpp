@@ -8,7 +8,7 @@ namespace {
 
 // Added to squares of sines, which keeps parallel directions defined. Below it every point is as near as another up to
 // rounding. A sum has no kink.
-constexpr const char* parallel = "1e-14";
+constexpr const char* added_square = "1e-14";
 
 std::string clamp(const std::string& x, const Core& segment) {
   return fmt::format("max(-{1}/2, min({1}/2, {0}))", x, segment.size);
@@ -47,7 +47,7 @@ std::vector<Nearest> nearest_of_segments(const Core& a, const Core& b, Names& na
   const std::string cosine = name(fmt::format("dot({}, {})", a.axis, b.axis));
   const std::string both = name(fmt::format("cross({}, {})", a.axis, b.axis));
   const std::string on_lines =
-      name(fmt::format("({0}*{1} - {2})/(dot({3}, {3}) + {4})", cosine, along_v, along_u, both, parallel));
+      name(fmt::format("({0}*{1} - {2})/(dot({3}, {3}) + {4})", cosine, along_v, along_u, both, added_square));
   const std::string t = name(clamp(fmt::format("{}*{} + {}", cosine, clamp(on_lines, a), along_v), b));
   const std::string s = name(clamp(fmt::format("{}*{} - {}", cosine, t, along_u), a));
   return {by_cores(name(along(a, s)), name(along(b, t)), a.radius, b.radius, name)};
@@ -114,7 +114,7 @@ std::vector<Nearest> nearest_to_cylinder(const Core& a, const std::string& radiu
   std::string own = a.centre;
   if (a.kind == Core::Kind::segment) {
     const std::string u = name(across(a.axis, unit)), w = name(fmt::format("{} - {}", a.centre, point));
-    own = name(along(a, clamp(fmt::format("-dot({0}, {1})/(dot({0}, {0}) + {2})", u, w, parallel), a)));
+    own = name(along(a, clamp(fmt::format("-dot({0}, {1})/(dot({0}, {0}) + {2})", u, w, added_square), a)));
   }
   const std::string on_axis = name(fmt::format("{1} + dot({0} - {1}, {2})*{2}", own, point, unit));
   return {by_cores(own, on_axis, a.radius, radius, name)};
@@ -147,9 +147,9 @@ std::vector<Nearest> nearest_to_cone(const Core& a, const std::string& angle, co
   const std::string plane = name(fmt::format("cross({}, {})", u, w));
   const std::string length = name(fmt::format("sqrt(dot({0}, {0}) + 1e-30*{1}^2)", plane, a.radius));
   const std::string lowest =
-      name(fmt::format("({0}*{1}/sqrt(max({2} - {0}^2, {4})) - {3})/max({2}, {4})", k, length, A, B, parallel));
+      name(fmt::format("({0}*{1}/sqrt(max({2} - {0}^2, {4})) - {3})/max({2}, {4})", k, length, A, B, added_square));
   const std::string end = fmt::format("sign({})*{}/2", k, a.size);
-  const std::string s = name(clamp(fmt::format("if({0} - {1}^2 > {2}, {3}, {4})", A, k, parallel, lowest, end), a));
+  const std::string s = name(clamp(fmt::format("if({0} - {1}^2 > {2}, {3}, {4})", A, k, added_square, lowest, end), a));
   const std::string t = name(clamp(fmt::format("dot({}, {} - {})", a.axis, apex, a.centre), a));
   const std::string p = name(along(a, s)), q = name(along(a, t));
   const auto distance = [&](const std::string& at) {
