@@ -15,9 +15,6 @@ using program::ArraySpace;
 using program::ProgramLoop;
 using program::Slot;
 
-// Shorter values that are used once are printed inline.
-constexpr std::size_t max_loop_inline_length = 64;
-
 const char* name(ArraySpace space) {
   switch (space) {
     case ArraySpace::scalars: return "scalars";
@@ -77,7 +74,7 @@ class LoopPrinter {
     std::size_t temporaries = 0;
     for (std::size_t i = 0; i < body.code.size(); ++i) {
       const Expressions::Expression value = expressions.print(body.code[i]);
-      if (uses.count[i] <= 1 && value.text.size() <= max_loop_inline_length) {
+      if (uses.count[i] <= 1 && value.text.size() <= max_inline_length) {
         expressions.set(i, value);
         continue;
       }

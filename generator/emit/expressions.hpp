@@ -11,6 +11,9 @@
 
 namespace eomgen::emit {
 
+/// Shorter values that are used once are printed inline.
+inline constexpr std::size_t max_inline_length = 64;
+
 /// Whether the printed form of an operation repeats its operands, which must then be names.
 bool repeats_operands(symbolic::Op op);
 

@@ -24,9 +24,6 @@ using program::Slot;
 using symbolic::Op;
 using Expression = Expressions::Expression;
 
-// Shorter values that are used once are printed inline.
-constexpr std::size_t max_inline_length = 64;
-
 // Return code of a function that assumed small angles and found a large one.
 constexpr int code_too_far = -1;
 
