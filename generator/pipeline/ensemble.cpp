@@ -17,6 +17,7 @@
 #include "error.hpp"
 #include "pipeline/bound_run.hpp"
 #include "pipeline/graph_trimmer.hpp"
+#include "run/methods.hpp"
 #include "run/monitored_functions.hpp"
 #include "work.hpp"
 

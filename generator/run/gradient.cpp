@@ -165,6 +165,7 @@ class GradientRun {
     auto& context = jumps_.equations().context;
     begin_piece(from.t, from.x);
     const auto rhs = [&](double t, const double* x, double* dx) { return context.rhs(t, x, dx); };
+    const eom::System f = eom::system_of(rhs);
     const auto surfaces = [&](double t, const double* x, double* g) { return context.events(t, x, g); };
     const auto observe = [&](const eom::StepView& step) {
       trajectory_.add(step);
@@ -184,8 +185,8 @@ class GradientRun {
       begin_piece(point.t, x);
       return changed ? eom::EventAction::restart : eom::EventAction::resume;
     };
-    const eom::Result part = eom::integrate_events(solver_, rhs, from.t, from.x, jumps_.segment_end(), options,
-                                                   surfaces, jumps_.watched_functions(), cross, observe);
+    const eom::Result part = eom::integrate_events(solver_, f, from.t, from.x, jumps_.segment_end(), options, surfaces,
+                                                   jumps_.watched_functions(), cross, observe);
     end_piece();
     return part;
   }
@@ -302,7 +303,7 @@ class GradientRun {
       if (size == 0) continue;
       // The tolerances are those of a state of size 1.
       for (double& value : w_) value /= size;
-      const eom::Result back = eom::integrate(solver_, *this, part.t1, w_, part.t0, options);
+      const eom::Result back = eom::integrate(solver_, eom::system_of(*this), part.t1, w_, part.t0, options);
       end.statistics += back.statistics;
       if (back.outcome != eom::Outcome::done) return end.outcome = back.outcome, end.detail = back.detail, false;
       for (std::size_t i = 0; i < w_.size(); ++i) w_[i] = size * back.x[i];
@@ -320,10 +321,11 @@ class GradientRun {
     const std::vector<double> x0 = trajectory_.part(k).x0;
     trajectory_.restart(k);
     const auto rhs = [&](double t, const double* x, double* dx) { return jumps_.equations().context.rhs(t, x, dx); };
-    const eom::Result again = eom::integrate(solver_, rhs, t0, x0, t1, options, [&](const eom::StepView& step) {
-      trajectory_.add_to(k, step);
-      return true;
-    });
+    const eom::Result again =
+        eom::integrate(solver_, eom::system_of(rhs), t0, x0, t1, options, [&](const eom::StepView& step) {
+          trajectory_.add_to(k, step);
+          return true;
+        });
     end.statistics += again.statistics;
     if (again.outcome != eom::Outcome::done) end.outcome = again.outcome, end.detail = again.detail;
     return again.outcome == eom::Outcome::done;

@@ -8,5 +8,7 @@ namespace eom::detail {
 
 extern template Result integrate_system(std::string_view, System, const InitialValues&, ObserverRef, NoProjection);
 extern template Result integrate_system(std::string_view, System, const InitialValues&, ObserverRef, AfterStepRef);
+extern template Result integrate_by_name(std::string_view, System&, const InitialValues&, ObserverRef, NoProjection);
+extern template Result integrate_by_name(std::string_view, System&, const InitialValues&, ObserverRef, AfterStepRef);
 
 }  // namespace eom::detail

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <eom/automatic.hpp>
+#include <eom/hybrid/methods.hpp>
 #include <eom/hybrid/segments.hpp>
 #include <utility>
 

@@ -157,8 +157,8 @@ class VariationalRun::Run {
       jumps_.settle_branches(step.t1, step.x1.data());
       return true;
     };
-    return eom::integrate_events(solver_, *this, from.t, from.x, end, options, surfaces, jumps_.watched_functions(),
-                                 cross, observe);
+    return eom::integrate_events(solver_, eom::system_of(*this), from.t, from.x, end, options, surfaces,
+                                 jumps_.watched_functions(), cross, observe);
   }
 
   const Scene& scene_;

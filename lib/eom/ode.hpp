@@ -134,6 +134,18 @@ Result integrate_by_name(std::string_view method, F& rhs, const InitialValues& v
   return any_method(by) ? result : integrate_system(method, system_of(rhs), values, observer, after_step);
 }
 
+/// A System goes by a variable without const: explicit methods, too, are compiled once for all of them.
+template <class F, class AfterStep>
+Result integrate_rhs(std::string_view method, F& rhs, const InitialValues& values, ObserverRef observer,
+                     AfterStep after_step) {
+  if constexpr (std::is_same_v<std::remove_const_t<F>, System>) {
+    System system = rhs;
+    return integrate_by_name(method, system, values, observer, after_step);
+  } else {
+    return integrate_by_name(method, rhs, values, observer, after_step);
+  }
+}
+
 }  // namespace detail
 
 /// Integrates from (t0, x0) to t1, which may be before t0. rhs(t, x, dx) -> int may have further members (system.hpp).
@@ -148,9 +160,9 @@ Result integrate(std::string_view method, F&& rhs, double t0, std::span<const do
   const detail::InitialValues values{t0, x0, t1, options};
   const detail::ObserverRef see = detail::observer_ref(observer);
   if constexpr (std::is_same_v<std::remove_cvref_t<AfterStep>, NoProjection>)
-    return detail::integrate_by_name(method, rhs, values, see, NoProjection{});
+    return detail::integrate_rhs(method, rhs, values, see, NoProjection{});
   else
-    return detail::integrate_by_name(method, rhs, values, see, detail::after_step_ref(after_step));
+    return detail::integrate_rhs(method, rhs, values, see, detail::after_step_ref(after_step));
 }
 
 }  // namespace eom

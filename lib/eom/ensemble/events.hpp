@@ -76,17 +76,19 @@ class EventMonitor {
     Slot(EventMonitor& of, std::size_t member, const EnsembleStart& start)
         : p(start.p.begin(), start.p.end()),
           one(of.member_rhs_(member, p.data())),
+          system(system_of(one)),
           functions{one},
           handler{of.on_crossing_, member},
-          run(of.method_, one, functions, of.functions_, start.t0, start.x, start.t1, of.options_, handler, observer,
+          run(of.method_, system, functions, of.functions_, start.t0, start.x, start.t1, of.options_, handler, observer,
               after_step) {}
     std::vector<double> p;
     One one;
+    System system;
     Functions functions;
     Handler handler;
     NoObserver observer;
     NoProjection after_step;
-    events::Run<One, Functions, Handler, NoObserver, NoProjection> run;
+    events::Run<System, Functions, Handler, NoObserver, NoProjection> run;
   };
 
   std::string_view method_;

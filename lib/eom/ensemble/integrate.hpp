@@ -81,7 +81,7 @@ void integrate_one_by_one(std::string_view method, Rhs& rhs, std::size_t members
       EnsembleStart at{0, 0, x, p};
       start(member, at);
       auto one = rhs.member_rhs(member, p.data());
-      const Result end = integrate(method, one, at.t0, x, at.t1, same);
+      const Result end = integrate(method, system_of(one), at.t0, x, at.t1, same);
       done(EnsembleEnd{member, end.outcome, end.t, end.x, p, end.statistics});
     }
   });

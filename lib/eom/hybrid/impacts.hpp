@@ -216,7 +216,10 @@ inline void ContactVelocities::record_impulses(double t, std::span<const double>
     return;
   if (problem_.code->outputs(t, x.data(), problem_.parameters.data(), u, open_.data(), y_.data()) != 0) return;
   const Eigen::Map<const Eigen::VectorXd> first(before.data() + n, n), last(x.data() + n, n);
-  const Eigen::VectorXd P = A.transpose().completeOrthogonalDecomposition().solve(M * (last - first));
+  // Of the types of other decompositions: compilation of one more takes seconds.
+  const Eigen::MatrixXd by_rows = A.transpose();
+  const Eigen::VectorXd change = M * (last - first);
+  const Eigen::VectorXd P = by_rows.completeOrthogonalDecomposition().solve(change);
   Eigen::VectorXd mean = (first + last) / 2;
   if (const std::optional<Eigen::VectorXd> frame = frame_rates(problem_, energy_, t, x)) mean += *frame;
   const bool begins = impulses_.empty();

@@ -258,7 +258,8 @@ inline bool Integration::start(Result& total, const OnEvent& event) {
 /// Integrates one segment, to its end or to an earlier end of the run.
 inline void Integration::integrate_until(double end, Options options, const Observer& observer, const OnEvent& event,
                                          Result& total) {
-  const Motion f{context_, keeps_constraints_};
+  const Motion motion{context_, keeps_constraints_};
+  const System f = system_of(motion);  // methods are compiled once for all users of a System
   const BoundedEvents g{context_, sampling_};
   const auto observe = [&](const StepView& step) {
     return observe_step(step, observer, event, options.fixed_step > 0);

@@ -153,7 +153,8 @@ class NarrowForces {
     constexpr int everywhere = 1;
     if (!boxes_.is_used(i)) return false;
     if (boxes_.contains(i, everywhere)) return true;
-    const auto& [code, visible] = functions_[i];
+    const expressions::Code& code = functions_[i].code;
+    const double visible = functions_[i].visible;
     const auto show_each_other = [v = visible](const expressions::Interval& all) {
       const double least = all.has(0) ? 0 : std::min(std::abs(all.low), std::abs(all.high));
       return std::max(std::abs(all.low), std::abs(all.high)) <= std::max((1 + v) * least, nothing);

@@ -40,7 +40,8 @@ class SingularityStep {
   /// Whether one step across the rank-deficient configuration and two steps with other stages agree within the
   /// tolerances and rounding. evaluations: incremented by the cost of the trial.
   bool is_accurate(const Result& from, double length, const Options& options, std::size_t& evaluations) {
-    const Motion f{context_};
+    const Motion motion{context_};
+    const System f = system_of(motion);
     const auto after = [this](double t, double* x) { return context_.projection(t, x); };
     const auto step = [&](double t, const std::vector<double>& x, double t_end) {
       Options one = options;
