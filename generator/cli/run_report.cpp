@@ -11,6 +11,7 @@
 #include "cli/operations.hpp"
 #include "cli/output.hpp"
 #include "cli/sensitivity_report.hpp"
+#include "run/event_list.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -171,8 +172,9 @@ Json RunReport::json() const {
     invariants[i.name] = {{"initial", finite_or_null(i.initial)},
                           {"max_relative_drift", finite_or_null(i.max_relative_drift)}};
   }
-  for (const run::RunEvent& e : result.events) {
+  for (const auto& [e, impacts] : run::list_events(result.events, scene.t0)) {
     events.push_back({{"t", e.t}, {"kind", e.kind}, {"name", e.name}});
+    if (impacts > 1) events.back()["impacts"] = impacts;
     if (has_work(e)) events.back()["work"] = finite_or_null(e.work);
     for (const eom::hybrid::ContactImpulse& impulse : e.impulses) events.back()["impulses"].push_back(to_json(impulse));
   }
@@ -278,8 +280,9 @@ std::string RunReport::text() const {
     }
     out += line("solver change", fmt::format("t = {:.6g}: {} to {}: {}", c.t, c.from, c.to, eom::to_text(c)));
   }
-  for (const run::RunEvent& e : result.events) {
-    out += line("event", fmt::format("{} at t = {}: {}{}{}", e.kind, e.t, e.name,
+  for (const auto& [e, impacts] : run::list_events(result.events, scene.t0)) {
+    out += line("event", fmt::format("{} at t = {}: {}{}{}{}", e.kind, e.t, e.name,
+                                     impacts > 1 ? fmt::format(", with {} short bounces", impacts - 1) : "",
                                      has_work(e) ? fmt::format(", work {:.6g}", e.work) : "", impulse_text(e)));
   }
   for (const run::KinkCrossings& k : result.kinks)

@@ -159,7 +159,7 @@ class ContactTransitions extends ContactForces {
       Object.assign(state, {mode: 0, starts: false});
       if (!at.sticks || hint.stops && hint.j === j) return;
       // Points of one body that slides or turns to rest stop together, though their slips differ.
-      const moves = this.slipSpeed(j) > (this.slips(j).length === 2 ? (hint.stops ? 10 : 1) * Math.max(least, this.leastSlip) : least);
+      const moves = this.slipSpeed(j) > (this.slips(j).length === 2 ? (hint.stops || hint.slips ? 10 : 1) * Math.max(least, this.leastSlip) : least);
       if (moves) state.mode = this.slips(j).length === 1 && this.rate(this.slips(j)[0]) < 0 ? -1 : 1;
     });
     if (later !== null) {

@@ -266,10 +266,10 @@ class Transitions {
       state.mode = Mode::closed;
       state.starts = false;
       if (!at.sticks || (hint.stops && hint.contact == j)) continue;
-      // Points of one body that slides or turns to rest stop together. Their slips are as different as their distances
-      // from the centre of the turn.
+      // Points of one body that slides or turns to rest stop together, or one is held by the other until it stops.
+      // Their slips are as different as their distances from the centre of the turn.
       constexpr double ratio = 10;
-      const double slowest = hint.stops ? ratio * tolerances.slip : tolerances.slip;
+      const double slowest = hint.stops || hint.slips ? ratio * tolerances.slip : tolerances.slip;
       const bool moves = forces_.slip_speed(j) > (at.slip.size() == 2 ? slowest : tolerances.speed);
       if (moves) state.mode = at.slip.size() == 1 && forces_.rate(at.slip[0]) < 0 ? Mode::sliding_back : Mode::sliding;
     }
