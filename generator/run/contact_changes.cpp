@@ -132,8 +132,18 @@ void change_contacts(VariationalEquations& in, const eom::Crossing& crossing, do
 
 std::optional<SlipBound> bound_of_slip(VariationalEquations& in, const eom::Crossing& crossing, double t,
                                        const std::vector<double>& x) {
-  if (!in.context.contacts) return std::nullopt;
   SlipBound bound;
+  if (in.context.solved_contacts) {
+    constexpr std::size_t values = eom::hybrid::SolvedContacts::values_per_contact;
+    const std::size_t function = crossing.function - in.context.events.first_solved_contact();
+    bound.contact = function / values;
+    const contacts::Description& contact = in.problem.code->contact_set.contacts[bound.contact];
+    if (!contact.sticks || contact.slip.size() != 2 || function % values != 1) return std::nullopt;
+    bound.ends = in.context.solved_contacts->save().states[bound.contact].mode != contacts::Mode::closed;
+    if (bound.ends) bound.along = slip_of(in, bound.contact, t, x);
+    return bound;
+  }
+  if (!in.context.contacts) return std::nullopt;
   const std::size_t function = crossing.function - in.context.events.first_contact();
   bound.contact = function / eom::contact_values;
   const eom::Contact& contact = in.problem.code->contacts[bound.contact];
@@ -144,6 +154,14 @@ std::optional<SlipBound> bound_of_slip(VariationalEquations& in, const eom::Cros
 }
 
 std::array<double, 2> slip_of(VariationalEquations& in, std::size_t contact, double t, const std::vector<double>& x) {
+  if (in.context.solved_contacts) {
+    in.context.model.forget_contact_forces();
+    contacts::ContactForces& forces = *in.context.model.contact_forces();
+    const std::vector<contacts::Row>& rows = forces.contact(contact).slip;
+    const bool known = forces.evaluate_rows(t, x.data(), in.context.model.inputs_without_contacts(t)) == 0;
+    return known ? std::array<double, 2>{forces.rate(rows[0]), forces.rate(rows[1])}
+                 : std::array<double, 2>{std::nan(""), std::nan("")};
+  }
   const std::vector<std::size_t>& places = in.problem.contacts[contact].slip;
   std::vector<double> y(in.problem.code->output_names.size());
   if (in.context.outputs(t, x.data(), y) != 0) return {std::nan(""), std::nan("")};
@@ -172,12 +190,6 @@ std::string ended_bounces(const VariationalEquations& in, const ContactSnapshot&
 }
 
 std::string unfollowed_contacts(const RunRequest& request) {
-  // Their right-hand sides are differentiated by differences, which are wider than slip that ends.
-  for (const eom::contacts::Description& contact : request.code.contact_set.contacts) {
-    if (contact.sticks && contact.slip.size() == 2)
-      return fmt::format("'{}' slides in two directions, and contact forces are solved for at every evaluation",
-                         contact.name);
-  }
   if (request.code.contacts.empty() && request.code.contact_set.empty()) return "";
   const bool resets = std::any_of(request.events.begin(), request.events.end(),
                                   [](const eom::hybrid::WatchedEvent& event) { return !event.reset.set.empty(); });

@@ -36,7 +36,7 @@ void watch_contacts(VariationalEquations& in, std::span<eom::EventFunction> func
 /// "run"} if it ends the run.
 void change_contacts(VariationalEquations& in, const eom::Crossing& crossing, double& t, std::vector<double>& x);
 
-/// The bound of slip, or of static friction, of a contact with two directions whose modes are compiled.
+/// The bound of slip, or of static friction, of a contact with two directions.
 struct SlipBound {
   std::size_t contact = 0;
   bool ends = false;              // the slip ends; else it begins

@@ -12,9 +12,9 @@ namespace {
 
 /// A contact on its way through the events.
 struct Flight {
-  double begin;                          // when it opened last, or its last impact
-  double longest = 0;                    // of its flights so far
-  std::optional<std::size_t> impact;     // its last listed impact
+  double begin;                           // when it opened last, or its last impact
+  double longest = 0;                     // of its flights so far
+  std::optional<std::size_t> impact;      // its last listed impact
   std::vector<std::size_t> changes = {};  // its other events since the last impact
 };
 

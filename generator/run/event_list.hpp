@@ -18,8 +18,8 @@ struct ListedEvent {
   std::size_t impacts = 1;  // of a `contact` event: its own, and those of the short bounces that follow it
 };
 
-/// events: in order of time, of a run that starts at t0. An impact of a contact that ends a short bounce is summed up in
-/// the listed impact before it; other events of the contact in that bounce (lose_contact, slip, stick) are left out.
+/// events: in order of time, of a run that starts at t0. An impact of a contact that ends a short bounce is summed up
+/// in the listed impact before it; other events of the contact in that bounce (lose_contact, slip, stick) are left out.
 std::vector<ListedEvent> list_events(const std::vector<RunEvent>& events, double t0);
 
 }  // namespace eomgen::run

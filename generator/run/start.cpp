@@ -64,13 +64,14 @@ class StartSolver {
   // increasing (order 1).
   void leave(std::uint8_t order) {
     p_.open.resize(rows_.contacts().size(), false);
+    VectorXd residual;
+    MatrixXd A;
+    rows_.linearise(order, residual, A);
+    const std::vector<std::size_t> numbers = rows_.of_order(order);  // before any row is dropped
     for (std::size_t j = 0; j < rows_.contacts().size(); ++j) {
       if (!rows_.contacts()[j].unilateral || p_.open[j]) continue;
       const std::size_t k = *rows_.contacts()[j].row;
-      VectorXd residual;
-      MatrixXd A;
-      rows_.linearise(order, residual, A);
-      const Eigen::Index row = row_of(order, k);
+      const Eigen::Index row = std::find(numbers.begin(), numbers.end(), k) - numbers.begin();
       bool given = std::isfinite(residual(row));
       for (std::size_t i = 0; i < n_; ++i) {
         const StartProblem::Key key{s_.free[i], order};
@@ -309,22 +310,32 @@ class StartSolver {
     return true;
   }
 
+  /// Whether the mass matrix has a row of this coordinate.
+  bool has_inertia(std::size_t i) const {
+    for (std::size_t k = 0; k < n_; ++k)
+      if (!s_.dag->is_zero(s_.M[i * n_ + k])) return true;
+    return false;
+  }
+
   /// If several choices satisfy the constraints (as for rolling without a given spin about the normal), solves for the
-  /// unknowns that the constraints depend on most strongly. The others stay 0 or keep their guess; this is reported.
+  /// unknowns that the constraints depend on most strongly; coordinates without inertia come first. The others stay 0
+  /// or keep their guess; this is reported.
   void choose(std::uint8_t order, const std::vector<std::size_t>& free) {
     VectorXd residual;
     MatrixXd A;
     rows_.linearise(order, residual, A);
     if (free.empty() || !A.allFinite()) return;
     MatrixXd columns(A.rows(), static_cast<Eigen::Index>(free.size()));
-    std::vector<bool> first;
+    std::vector<Selection> selection;
     for (std::size_t i = 0; i < free.size(); ++i) {
       columns.col(static_cast<Eigen::Index>(i)) = A.col(static_cast<Eigen::Index>(free[i]));
-      first.push_back(may_move({s_.free[free[i]], order}));
+      selection.push_back(may_move({s_.free[free[i]], order}) ? Selection::named
+                          : has_inertia(free[i])              ? Selection::other
+                                                              : Selection::followed);
     }
     std::vector<std::size_t> chosen;
     std::string open;
-    const std::vector<bool> felt = select_most_sensitive(columns, first, start_rank_tolerance);
+    const std::vector<bool> felt = select_most_sensitive(columns, selection, start_rank_tolerance);
     for (std::size_t i = 0; i < free.size(); ++i) {
       const StartProblem::Key key{s_.free[free[i]], order};
       if (felt[i])

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "run/slip_turn.hpp"
 #include "run/variational_jumps.hpp"
 
 namespace eomgen::run {
@@ -96,7 +97,11 @@ class VariationalRun::Run {
   int differences(double t, const double* x, double* dx) {
     const std::vector<double> at(x, x + n_ * (directions_.size() + 1));
     std::vector<double> state(n_), value(n_);
+    SlipTurn turn(jumps_.equations(), t, at.data());
+    Slips rates;
     const auto add = [&](VariationalEquations& in, double weight, std::size_t d) {
+      turn.hold(in);
+      if (const int code = SlipTurn::add_slips(turn, in, t, state.data(), weight, rates); code != 0) return code;
       if (const int code = in.context.rhs(t, state.data(), value.data()); code != 0) return code;
       for (std::size_t i = 0; i < n_; ++i) slopes_[d * n_ + i] += weight * value[i];
       return 0;
@@ -107,6 +112,7 @@ class VariationalRun::Run {
       const std::vector<double> s(at.begin() + static_cast<std::ptrdiff_t>((d + 1) * n_),
                                   at.begin() + static_cast<std::ptrdiff_t>((d + 2) * n_));
       const double size = largest_magnitude(s);
+      rates = turn.zero();
       const double h = size > 0 ? relative_difference * jumps_.scales().magnitude(own) / size : 0;
       for (const auto& [offset, weight] : order_four) {
         if (size == 0) break;
@@ -120,6 +126,7 @@ class VariationalRun::Run {
         if (weight == 0) continue;
         if (const int code = add(jumps_.in_segment(*beside[k]), weight, d); code != 0) return code;
       }
+      if (const int code = turn.add_turn(t, own.data(), rates, slopes_.data() + d * n_); code != 0) return code;
     }
     if (const int code = jumps_.equations().context.rhs(t, own.data(), f_.data()); code != 0) return code;
     std::copy(f_.begin(), f_.end(), dx);

@@ -22,6 +22,12 @@ struct VariationalEquations {
     constexpr double least_slip = 1e-8;
     if (context.contacts)
       context.contacts->set_tolerances(std::max(problem.rtol, least_slip), std::max(problem.atol, 1e-3 * least_slip));
+    const std::vector<eom::contacts::Description>& solved = problem.code->contact_set.contacts;
+    if (context.solved_contacts && std::any_of(solved.begin(), solved.end(), [](const auto& contact) {
+          return contact.sticks && contact.slip.size() == 2;
+        }))
+      context.solved_contacts->set_tolerances(std::max(problem.rtol, least_slip),
+                                              std::max(problem.atol, 1e-3 * least_slip));
   }
   VariationalEquations(const VariationalEquations&) = delete;
   VariationalEquations& operator=(const VariationalEquations&) = delete;

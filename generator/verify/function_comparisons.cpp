@@ -294,8 +294,12 @@ class FunctionComparisons {
       rates = std::max(rates, relative_difference(slopes->values[0][of] - expected,
                                                   size + lost[of] + slopes->errors[0][of] + cln::abs(expected)));
     };
-    const std::vector<Real> f = evaluate(s_.f, lookup_);
+    // Forces of different sizes at all rows together: the sum shows an error of any of them.
+    SymbolValues pushed = lookup_;
+    std::vector<Real> push(n, Real(0)), push_size(n, Real(1));
     const auto row = [&](const eom::contacts::Row& place, std::size_t input) {
+      constexpr std::size_t prime = 1009, factor = 619;
+      const Real force = 1 + to_exact(static_cast<double>(input * factor % prime)) / prime;
       Real acceleration = c[place.bias()], size = sizes_[0][place.bias()];
       for (std::size_t k = 0; k < place.columns.size(); ++k) {
         const Real term = c[place.slope(k)] * (*rhs)[0][n + place.columns[k]];
@@ -303,14 +307,12 @@ class FunctionComparisons {
         size = size + cln::abs(term);
       }
       follows(place.rate(), acceleration, size);
-      SymbolValues pushed = lookup_;
-      pushed.state.inputs[input] = pushed.state.inputs[input] + 1;
-      const std::vector<Real> with = evaluate(s_.f, pushed);
-      std::vector<Real> slope(n, Real(0));
-      for (std::size_t k = 0; k < place.columns.size(); ++k) slope[place.columns[k]] = c[place.slope(k)];
-      for (std::size_t i = 0; i < n; ++i)
-        work = std::max(work, relative_difference(with[i] - f[i] - slope[i],
-                                                  cln::abs(with[i]) + cln::abs(f[i]) + cln::abs(slope[i]) + 1));
+      pushed.state.inputs[input] = pushed.state.inputs[input] + force;
+      for (std::size_t k = 0; k < place.columns.size(); ++k) {
+        const Real term = force * c[place.slope(k)];
+        push[place.columns[k]] = push[place.columns[k]] + term;
+        push_size[place.columns[k]] = push_size[place.columns[k]] + cln::abs(term);
+      }
     };
     const ConstraintValues constraints = oracle_.constraint_values(v_.state);
     for (std::size_t j = 0; j < set.contacts.size(); ++j) {
@@ -325,6 +327,10 @@ class FunctionComparisons {
       }
       for (std::size_t a = 0; a < contact.slip.size(); ++a) row(contact.slip[a], contact.friction_input + a);
     }
+    const std::vector<Real> f = evaluate(s_.f, lookup_), with = evaluate(s_.f, pushed);
+    for (std::size_t i = 0; i < n; ++i)
+      work = std::max(work,
+                      relative_difference(with[i] - f[i] - push[i], cln::abs(with[i]) + cln::abs(f[i]) + push_size[i]));
     tally_.record("gaps of contacts of " + program_.name, oracle_name, false, gaps);
     note("contact_rows", "gaps and velocities along the path", rates);
     note("contact_rows", "the forces of contacts", work);

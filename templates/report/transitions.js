@@ -150,8 +150,9 @@ class ContactTransitions extends ContactForces {
   decide(t, x, u, touching, hint, later) {
     if (!this.readRows(t, x, u)) return -1;
     const least = this.negligible();
+    let ends = false;  // a slip in two directions
     this.contacts.forEach((at, j) => {
-      const state = this.mode[j];
+      const state = this.mode[j], slid = state.mode === 1 || state.mode === -1;
       if (at.unilateral && (!touching.includes(j) || this.rate(at.normal) > least)) {
         state.mode = 2;
         return;
@@ -159,12 +160,29 @@ class ContactTransitions extends ContactForces {
       Object.assign(state, {mode: 0, starts: false});
       if (!at.sticks || hint.stops && hint.j === j) return;
       // Points of one body that slides or turns to rest stop together, though their slips differ.
-      const moves = this.slipSpeed(j) > (this.slips(j).length === 2 ? (hint.stops || hint.slips ? 10 : 1) * Math.max(least, this.leastSlip) : least);
+      const slowest = Math.max(least, this.leastSlip), stop = hint.stops || hint.slips;
+      const moves = this.slipSpeed(j) > (this.slips(j).length < 2 ? least : stop ? 10 * Math.max(slowest, this.tolerances.rtol * this.sizes.speed) : slowest);
       if (moves) state.mode = this.slips(j).length === 1 && this.rate(this.slips(j)[0]) < 0 ? -1 : 1;
+      ends ||= slid && !moves && this.slips(j).length === 2;
     });
     if (later !== null) {
-      ({t, x} = later);
-      if (!this.readRows(t, x, this.live.input(t))) return -1;
+      const slip = (j) => this.slips(j).map((row) => this.rate(row)), before = this.contacts.map((_, j) => slip(j));
+      if (!this.readRows(later.t, later.x, this.live.input(later.t))) return -1;
+      let reverses = false;
+      this.contacts.forEach((at, j) => {
+        if (this.mode[j].mode !== 1 || !at.sticks || before[j].length !== 2) return;
+        if (!(slip(j).reduce((sum, w, a) => sum + w * before[j][a], 0) < 0)) return;
+        Object.assign(this.mode[j], {mode: 0, starts: false});
+        reverses = true;
+      });
+      // Friction that reaches its limit as another slip ends is that of the end: all may stick together.
+      if (hint.slips && (ends || reverses)) hint = {};
+      if (reverses || hint.j === undefined) {
+        later = null;
+        if (!this.readRows(t, x, u)) return -1;
+      } else {
+        ({t, x} = later);
+      }
     }
     const broken = this.contacts.map((_, j) => Boolean(hint.slips) && hint.j === j);
     for (let round = 0; round <= this.contacts.length; ++round) {

@@ -229,15 +229,23 @@ void check_run(const Json& found, const Json& expected) {
     CAPTURE(name);
     CHECK(std::abs(value.get<double>() - end) <= of_solvers * (1 + std::abs(end)));
   }
-  std::vector<std::pair<std::string, double>> events;
+  // The page lists every impact. `run` lists short bounces with the impact before them.
+  std::map<std::string, std::size_t> summed;
+  std::size_t k = 0;
   for (const Json& event : expected["events"]) {
-    if (event["kind"] != "sample") events.emplace_back(event["name"].get<std::string>(), event["t"].get<double>());
+    if (event["kind"] == "sample") continue;
+    const auto is_next = [&](const Json& on_page) {
+      const double t = event["t"];
+      return on_page["name"] == event["name"] && std::abs(on_page["t"].get<double>() - t) <= of_solvers * (1 + t);
+    };
+    CAPTURE(event.dump());
+    for (; k < found["events"].size() && !is_next(found["events"][k]); ++k)
+      CHECK(summed[found["events"][k]["name"].get<std::string>()] > 0);
+    REQUIRE(k < found["events"].size());
+    ++k;
+    if (event.contains("impacts")) summed[event["name"].get<std::string>()] += event["impacts"].get<std::size_t>() - 1;
   }
-  REQUIRE(found["events"].size() == events.size());
-  for (std::size_t k = 0; k < events.size(); ++k) {
-    CHECK(found["events"][k]["name"] == events[k].first);
-    CHECK(std::abs(found["events"][k]["t"].get<double>() - events[k].second) <= of_solvers * (1 + events[k].second));
-  }
+  for (; k < found["events"].size(); ++k) CHECK(summed[found["events"][k]["name"].get<std::string>()] > 0);
 }
 
 }  // namespace

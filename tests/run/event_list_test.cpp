@@ -21,7 +21,8 @@ RunEvent change(double t, const std::string& kind, const std::string& contact) {
 std::vector<RunEvent> bounces(int n, double ratio) {
   std::vector<RunEvent> events;
   double t = 1, flight = 2 * ratio, normal = 1;
-  for (int k = 0; k < n; ++k, t += flight, flight *= ratio, normal *= ratio) events.push_back(impact(t, "floor", normal));
+  for (int k = 0; k < n; ++k, t += flight, flight *= ratio, normal *= ratio)
+    events.push_back(impact(t, "floor", normal));
   return events;
 }
 

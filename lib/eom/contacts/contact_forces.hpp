@@ -127,6 +127,7 @@ class ContactForces {
 
   /// The direction of slip of a sliding contact, times the share of the Coulomb force that its law gives.
   std::array<double, 2> direction(std::size_t j) const {
+    if (j < prescribed_.size() && prescribed_[j]) return *prescribed_[j];
     const Description& at = contact(j);
     std::array<double, 2> w{};
     for (std::size_t a = 0; a < at.slip.size(); ++a) w[a] = rate(at.slip[a]);
@@ -137,6 +138,12 @@ class ContactForces {
     }
     if (at.slip.size() == 1) return {states_[j].mode == Mode::sliding_back ? -1.0 : 1.0, 0};
     return led_direction(w, states_[j].direction, least_slip_, states_[j].starts ? start_slip_ : least_slip_);
+  }
+  /// Sets the directions of contacts, in place of those of their slip; empty: none. For derivatives, where the slip is
+  /// much smaller than the widths of differences.
+  void prescribe_directions(std::vector<std::optional<std::array<double, 2>>> directions) {
+    ++changes_;
+    prescribed_ = std::move(directions);
   }
   /// Whether the friction of a contact follows from its normal force and its slip.
   bool has_friction(std::size_t j) const {
@@ -327,42 +334,12 @@ class ContactForces {
     for (const auto& [input, share] : pattern.inputs) u[input] += share * amount;
   }
   /// s with row = s times the other, of the same columns; 0 if they are not parallel.
-  double ratio(const Row& row, const Row& other) const {
-    constexpr double rounding = 1e-12;
-    std::size_t largest = 0;
-    for (std::size_t k = 1; k < row.columns.size(); ++k)
-      if (std::abs(c_[other.slope(k)]) > std::abs(c_[other.slope(largest)])) largest = k;
-    if (row.columns.empty() || c_[other.slope(largest)] == 0) return 0;
-    const double s = c_[row.slope(largest)] / c_[other.slope(largest)];
-    for (std::size_t k = 0; k < row.columns.size(); ++k) {
-      const double size = std::abs(c_[row.slope(largest)]);
-      if (std::abs(c_[row.slope(k)] - s * c_[other.slope(k)]) > rounding * size) return 0;
-    }
-    return s;
-  }
+  double ratio(const Row& row, const Row& other) const;
   /// Whether friction sticks along the normal of contact j, as of a coordinate on its end stop: their rows are one.
-  bool is_prevented_by_sticking(std::size_t j) const {
-    return std::any_of(alike_.begin(), alike_.end(), [&](const Alike& pair) {
-      return pair.stop == j && !has_friction(j) && is_sticking(pair.sticking) &&
-             ratio(*pair.slip, contact(j).normal) != 0;
-    });
-  }
+  bool is_prevented_by_sticking(std::size_t j) const;
   /// What friction would take of a force that presses on a contact along its direction is the force of that contact:
   /// friction acts where nothing else prevents slip.
-  void pass_to_stop(double* u, const Pattern& tangent, double force) {
-    const Row& row = contact(tangent.contact).slip[static_cast<std::size_t>(tangent.component)];
-    for (const Alike& pair : alike_) {
-      if (pair.slip != &row || !is_closed(pair.stop) || has_friction(pair.stop)) continue;
-      const double lambda = force * ratio(row, contact(pair.stop).normal);
-      if (!(lambda > 0)) continue;
-      push(u, tangent, -force);
-      push(u, normal_pattern(pair.stop, false), lambda);
-      lambda_[pair.stop] = lambda;
-      force_size_[pair.stop] = std::abs(lambda / force) * force_size_[tangent.contact];
-      force_per_acceleration_[pair.stop] = std::abs(lambda / force) * force_per_acceleration_[tangent.contact];
-      return;
-    }
-  }
+  void pass_to_stop(double* u, const Pattern& tangent, double force);
   /// Moves forces that the motion does not determine, of patterns_, within the limits of their laws.
   void make_admissible(Vector& forces) const;
   void signs_of_margins(std::size_t j, double minus_free) {
@@ -382,6 +359,7 @@ class ContactForces {
   std::vector<ContactState> states_;
   std::vector<double> c_, lambda_, margins_, force_size_, force_per_acceleration_;
   std::vector<std::array<double, 2>> phi_;
+  std::vector<std::optional<std::array<double, 2>>> prescribed_;
   std::vector<double> amplitude_;
   std::vector<bool> several_;
   std::vector<Alike> alike_;
@@ -396,4 +374,5 @@ class ContactForces {
 
 }  // namespace eom::contacts
 
-#include "eom/contacts/force_limits.hpp"  // the member that finds admissible forces
+#include "eom/contacts/force_limits.hpp"       // the member that finds admissible forces
+#include "eom/contacts/friction_at_stops.hpp"  // the members for friction along the normal of another contact

@@ -17,6 +17,7 @@ namespace eom::contacts {
 struct Tolerances {
   double speed = 1e-12;  // of gaps and slip
   double slip = 1e-12;   // in two directions
+  double error = 0;      // of speeds, left by the errors of faster motion
 };
 
 /// Bounds below which a gap or a speed counts as zero, from the sizes met during the run.
@@ -119,7 +120,9 @@ class Thresholds {
   }
   /// The slip up to which one that began with a slip of 0 keeps some of the direction in which it began.
   double start_slip(double least) const { return least * start_of_slip(rtol_); }
-  Tolerances tolerances() const { return {negligible_speed(), std::max(negligible_speed(), forces_.least_slip())}; }
+  Tolerances tolerances() const {
+    return {negligible_speed(), std::max(negligible_speed(), forces_.least_slip()), rtol_ * sizes_.speed};
+  }
 
  private:
   static void grow(double& largest, double value) {

@@ -97,13 +97,24 @@ class Transitions {
 
   /// The states of the contacts at (t, x), whose gap speeds are not negative. Only those in `touching` can be closed.
   /// `later`: the state of which the forces decide; none: (t, x), with a small acceleration towards the change.
-  Result decide(double t, const double* x, double* u, const std::vector<std::size_t>& touching, const Hint& hint,
+  Result decide(double t, const double* x, double* u, const std::vector<std::size_t>& touching, Hint hint,
                 const Tolerances& tolerances, std::optional<LaterState> later = {}) {
     if (const int code = forces_.evaluate_rows(t, x, u); code != 0) return {Outcome::no_value, code, none};
-    begin_states(touching, hint, tolerances);
+    bool ends = begin_states(touching, hint, tolerances);
     if (later) {
-      t = later->t, x = later->x.data(), u = later->u.data();
-      if (const int code = forces_.evaluate_rows(t, x, u); code != 0) return {Outcome::no_value, code, none};
+      const std::vector<std::array<double, 2>> slips = slips_in_two_directions();
+      if (const int code = forces_.evaluate_rows(later->t, later->x.data(), later->u.data()); code != 0)
+        return {Outcome::no_value, code, none};
+      const bool reverses = stop_reversed(slips);
+      // Friction that reaches its limit as another slip ends is that of the end: all may stick together.
+      ends = ends || reverses;
+      if (hint.slips && ends) hint = {};
+      if (reverses || hint.contact == none) {
+        later.reset();
+        if (const int code = forces_.evaluate_rows(t, x, u); code != 0) return {Outcome::no_value, code, none};
+      } else {
+        t = later->t, x = later->x.data(), u = later->u.data();
+      }
     }
     favours_ = !later;
     std::vector<bool> broken(forces_.set().contacts.size(), false);
@@ -250,11 +261,14 @@ class Transitions {
     return result;
   }
 
-  /// Sliding where there is slip, closed where there is none, open where nothing touches.
-  void begin_states(const std::vector<std::size_t>& touching, const Hint& hint, const Tolerances& tolerances) {
+  /// Sliding where there is slip, closed where there is none, open where nothing touches. Returns whether a slip in two
+  /// directions ends.
+  bool begin_states(const std::vector<std::size_t>& touching, const Hint& hint, const Tolerances& tolerances) {
+    bool ends = false;
     for (std::size_t j = 0; j < forces_.set().contacts.size(); ++j) {
       const Description& at = forces_.contact(j);
       ContactState& state = forces_.states()[j];
+      const bool slid = state.mode == Mode::sliding || state.mode == Mode::sliding_back;
       if (at.unilateral && std::find(touching.begin(), touching.end(), j) == touching.end()) {
         state.mode = Mode::open;
         continue;
@@ -266,104 +280,29 @@ class Transitions {
       state.mode = Mode::closed;
       state.starts = false;
       if (!at.sticks || (hint.stops && hint.contact == j)) continue;
-      // Points of one body that slides or turns to rest stop together, or one is held by the other until it stops.
-      // Their slips are as different as their distances from the centre of the turn.
+      // Points of one body that slides or turns to rest stop together. Their slips are as different as their distances
+      // from the centre of the turn.
       constexpr double ratio = 10;
-      const double slowest = hint.stops || hint.slips ? ratio * tolerances.slip : tolerances.slip;
+      const bool stop = hint.stops || hint.slips;
+      const double slowest = stop ? ratio * std::max(tolerances.slip, tolerances.error) : tolerances.slip;
       const bool moves = forces_.slip_speed(j) > (at.slip.size() == 2 ? slowest : tolerances.speed);
       if (moves) state.mode = at.slip.size() == 1 && forces_.rate(at.slip[0]) < 0 ? Mode::sliding_back : Mode::sliding;
+      ends = ends || (slid && !moves && at.slip.size() == 2);
     }
+    return ends;
   }
+  /// Of each contact that slides in two directions; 0 for others.
+  std::vector<std::array<double, 2>> slips_in_two_directions() const;
+  /// Closes contacts whose slip has reversed since; returns whether there are any.
+  bool stop_reversed(const std::vector<std::array<double, 2>>& before);
   double gap_speed_now(std::size_t j) const { return forces_.rate(forces_.contact(j).normal); }
 
   /// One complementarity problem on accelerations. `again`: a contact has just begun to slide, whose coefficient
   /// changes.
-  Result settle(double t, const double* x, double* u, const Hint& hint, std::vector<bool>& broken, bool& again) {
-    std::vector<double> inputs(u, u + input_count_);
-    double* const v = inputs.data();
-    if (const int code = forces_.evaluate_free(t, x, v); code != 0) return {Outcome::no_value, code, none};
-    forces_.observe_accelerations();
-    ContactProblem rows(forces_, t, x, v);
-    for (std::size_t j = 0; j < forces_.set().contacts.size(); ++j) {
-      if (!forces_.is_closed(j)) continue;
-      const Description& at = forces_.contact(j);
-      Index normal = -1;
-      if (at.has_constraint())
-        normal = rows.add_row(j, at.normal, forces_.normal_pattern(j, true),
-                              at.unilateral ? Kind::unilateral : Kind::bilateral);
-      if (forces_.is_sticking(j))
-        rows.add_friction(j, normal, forces_.value(broken[j] ? at.dynamic_coefficient : at.static_coefficient));
-    }
-    if (const int code = rows.complete(); code != 0) return {Outcome::no_value, code, none};
-    FrictionProblem& problem = rows.problem();
-    const Index count = rows.size();
-    Vector size(count);
-    for (Index i = 0; i < count; ++i) {
-      problem.q(i) = forces_.acceleration(rows.row(i), forces_.free_accelerations());
-      size(i) =
-          std::abs(forces_.value(rows.row(i).bias())) + forces_.terms(rows.row(i), forces_.free_accelerations().data());
-    }
-    favour(rows, size, hint);
-    const FrictionForces found = solve(problem);
-    if (!found.found) return {Outcome::no_solution, 0, rows.fastest_contact()};
-    const double largest = count > 0 ? size.maxCoeff() : 0, rounding = forces_.acceleration_rounding();
-    const double least = std::max(negligible * largest, rounding), opening = std::max(opens * largest, rounding);
-    for (Index i = 0; i < count; ++i) {
-      const std::size_t j = rows.contact(i);
-      // One of the two is 0, but for rounding.
-      const bool separates = !(found.force(i) > 0) || found.velocity(i) > problem.G(i, i) * found.force(i);
-      if (rows.kind(i) == Kind::unilateral && separates &&
-          (found.velocity(i) > opening || (hint.parts && hint.contact == j)))
-        forces_.states()[j].mode = Mode::open;
-      if (rows.kind(i) == Kind::bilateral && found.force(i) != 0)
-        forces_.states()[j].normal_sign = found.force(i) < 0 ? -1 : 1;
-    }
-    const std::vector<std::size_t>& law_of = rows.contact_of_law();
-    for (std::size_t l = 0; l < law_of.size(); ++l) {
-      const std::size_t j = law_of[l];
-      if (!forces_.is_closed(j) || !(found.speed[l] > least)) continue;
-      if (!broken[j] &&
-          forces_.value(forces_.contact(j).static_coefficient) != forces_.value(forces_.contact(j).dynamic_coefficient))
-        broken[j] = again = true;
-    }
-    if (again) {
-      // Nothing is final: contacts that were opened here may be closed with the other coefficient.
-      for (Index i = 0; i < count; ++i)
-        if (forces_.states()[rows.contact(i)].mode == Mode::open) forces_.states()[rows.contact(i)].mode = Mode::closed;
-      return {};
-    }
-    for (std::size_t l = 0; l < law_of.size(); ++l) {
-      const std::size_t j = law_of[l];
-      if (!forces_.is_closed(j) || !(found.speed[l] > least)) continue;
-      ContactState& state = forces_.states()[j];
-      const std::vector<Index>& tangents = problem.laws[l].tangents;
-      state.mode = tangents.size() == 1 && found.velocity(tangents[0]) < 0 ? Mode::sliding_back : Mode::sliding;
-      state.starts = tangents.size() == 2;
-      for (std::size_t a = 0; a < tangents.size(); ++a)
-        state.direction[a] = found.velocity(tangents[a]) / found.speed[l];
-    }
-    return {};
-  }
-
+  Result settle(double t, const double* x, double* u, const Hint& hint, std::vector<bool>& broken, bool& again);
   /// Adds a small acceleration towards the change that the crossing announces: at the crossing itself both states obey
   /// the law.
-  void favour(ContactProblem& rows, const Vector& size, const Hint& hint) const {
-    if (hint.contact == none || !favours_) return;
-    Vector& q = rows.problem().q;
-    const double largest = size.size() > 0 ? size.maxCoeff() : 0;
-    std::size_t a = 0;
-    for (Index i = 0; i < q.size(); ++i) {
-      if (rows.contact(i) != hint.contact) continue;
-      if (rows.kind(i) == Kind::friction) {
-        const std::array<double, 2>& phi = friction_before_;
-        const double length = std::hypot(phi[0], phi[1]);
-        if (hint.slips && length > 0) q(i) -= announced * largest * phi[a] / length;
-        ++a;
-      } else if (hint.parts) {
-        q(i) += announced * largest;
-      }
-    }
-  }
+  void favour(ContactProblem& rows, const Vector& size, const Hint& hint) const;
 
  public:
   /// The friction of the contact of a Hint before the crossing.
@@ -390,3 +329,5 @@ class Transitions {
 };
 
 }  // namespace eom::contacts
+
+#include "eom/contacts/mode_decision.hpp"  // the members that decide the modes
