@@ -7,6 +7,7 @@
 #include <pugixml.hpp>
 
 #include "model/names.hpp"
+#include "utf8.hpp"
 
 namespace eomgen::import {
 namespace {
@@ -35,25 +36,13 @@ class Lines {
   std::vector<std::size_t> starts_;
 };
 
-/// The length of the UTF-8 character at `at`; 0 if it is none or a control character.
-std::size_t character_length(const std::string& bytes, std::size_t at) {
-  const auto byte = [&](std::size_t i) { return i < bytes.size() ? static_cast<unsigned char>(bytes[i]) : 0u; };
-  const unsigned first = byte(at);
-  if (first < 0x80) return (first >= 0x20 && first != 0x7f) || first == '\n' || first == '\t' || first == '\r' ? 1 : 0;
-  const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
-  if (first < 0xc2 || first > 0xf4) return 0;
-  for (std::size_t i = 1; i < length; ++i)
-    if ((byte(at + i) & 0xc0u) != 0x80) return 0;
-  const bool overlong = (first == 0xe0 && byte(at + 1) < 0xa0) || (first == 0xf0 && byte(at + 1) < 0x90);
-  const bool beyond = (first == 0xed && byte(at + 1) > 0x9f) || (first == 0xf4 && byte(at + 1) > 0x8f);
-  return overlong || beyond ? 0 : length;
-}
-
 void require_text(const Lines& lines, const std::string& bytes) {
   for (std::size_t at = 0; at < bytes.size();) {
-    const std::size_t length = character_length(bytes, at);
-    if (length == 0)
-      fail(lines.where(at, 1), fmt::format("byte 0x{:02x} is no text in UTF-8", static_cast<unsigned char>(bytes[at])),
+    const auto byte = static_cast<unsigned char>(bytes[at]);
+    const std::size_t length = utf8_length(std::string_view(bytes).substr(at));
+    const bool is_control = (byte < 0x20 && byte != '\n' && byte != '\t' && byte != '\r') || byte == 0x7f;
+    if (length == 0 || is_control)
+      fail(lines.where(at, 1), fmt::format("byte 0x{:02x} is no text in UTF-8", byte),
            "save the file as UTF-8 without control characters");
     at += length;
   }

@@ -5,37 +5,9 @@
 
 #include <algorithm>
 
+#include "utf8.hpp"
+
 namespace eomgen::model {
-namespace {
-
-// The length of the UTF-8 sequence at `at`; 0 if it is invalid (including overlong forms and surrogates).
-std::size_t utf8_length(const std::string& text, std::size_t at) {
-  const auto byte = [&](std::size_t i) -> unsigned {
-    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
-  };
-  const unsigned first = byte(at);
-  const auto follows = [&](std::size_t count) {
-    for (std::size_t k = 1; k <= count; ++k) {
-      if ((byte(at + k) & 0xc0u) != 0x80u) return false;
-    }
-    return true;
-  };
-  if (first < 0x80) return 1;
-  if (first >= 0xc2 && first <= 0xdf) return follows(1) ? 2 : 0;
-  if (first >= 0xe0 && first <= 0xef) {
-    const unsigned second = byte(at + 1);
-    if ((first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f)) return 0;
-    return follows(2) ? 3 : 0;
-  }
-  if (first >= 0xf0 && first <= 0xf4) {
-    const unsigned second = byte(at + 1);
-    if ((first == 0xf0 && second < 0x90) || (first == 0xf4 && second > 0x8f)) return 0;
-    return follows(3) ? 4 : 0;
-  }
-  return 0;
-}
-
-}  // namespace
 
 Source::Source(std::string file, std::string text) : file_(std::move(file)), text_(std::move(text)) {
   if (text_.size() > max_file_bytes) {
@@ -95,7 +67,7 @@ void Source::check_bytes() {
   line_characters_.push_back(0);
   for (std::size_t at = 0; at < text_.size();) {
     const auto c = static_cast<unsigned char>(text_[at]);
-    const std::size_t length = utf8_length(text_, at);
+    const std::size_t length = utf8_length(std::string_view(text_).substr(at));
     const bool control = (c < 0x20 && c != '\t' && c != '\n' && c != '\r') || c == 0x7f;
     const bool lone_return = c == '\r' && (at + 1 >= text_.size() || text_[at + 1] != '\n');
     if (length == 0 || control || lone_return) {
