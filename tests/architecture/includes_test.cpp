@@ -45,6 +45,8 @@ const std::vector<std::pair<std::string, std::set<std::string>>> libraries = {
     {"toml++/", {"tomlplusplus::tomlplusplus"}},
     {"pugixml.hpp", {"pugixml::pugixml"}},
     {"asmjit/", {"asmjit::asmjit"}},
+    {"minizip/", {"Minizip::minizip"}},
+    {"zlib.h", {"Minizip::minizip"}},
 };
 
 std::string place(const fs::path& file, const Include& include) {

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/sweep/npz.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
+#include <eom/output/atomic_file.hpp>
 #include <eom/output/decimal.hpp>
 #include <limits>
-#include <stdexcept>
 
-#include "cli/sweep/archive.hpp"
+#include "emit/fmu/zip.hpp"
 #include "error.hpp"
 #include "model/names.hpp"
 
@@ -27,7 +29,7 @@ std::string npy_header(const std::string& type, const std::string& shape) {
          dictionary;
 }
 
-std::string bytes_type(std::size_t width) { return fmt::format("|S{}", std::max<std::size_t>(width, 1)); }
+std::string bytes_type(std::size_t width) { return fmt::format("|S{}", width); }
 
 /// The fields of a row or of the header up to the detail, without the checksum.
 std::vector<std::string_view> fields_of(std::string_view line, std::size_t count) {
@@ -65,99 +67,108 @@ void append(std::string& text, T value) {
   for (int i = 0; i < 8; ++i) text += static_cast<char>(bits >> (8 * i) & 0xff);
 }
 
-void append(std::string& text, std::string_view bytes, std::size_t width) {
-  text += bytes;
-  text.append(width - bytes.size(), '\0');
-}
+/// A member of the archive.
+struct Column {
+  std::string name, type;
+  std::size_t width, count;  // bytes of an entry; entries
+};
 
 class ColumnArchive {
  public:
   ColumnArchive(const std::string& key, const std::string& header, const Rows& rows) : rows_(rows), key_(key) {
     const auto commas = static_cast<std::size_t>(std::count(header.begin(), header.end(), ','));
     for (const std::string_view name : fields_of(header, commas)) names_.emplace_back(name);
-    outcome_ = static_cast<std::size_t>(std::find(names_.begin(), names_.end(), "outcome") - names_.begin());
-    rows_.for_each(0, rows_.size(), [this](std::size_t, std::string_view line) {
+    const auto outcome = static_cast<std::size_t>(std::find(names_.begin(), names_.end(), "outcome") - names_.begin());
+    std::size_t outcome_width = 1, details = 0, detail_width = 1;
+    rows_.for_each(0, rows_.size(), [&](std::size_t, std::string_view line) {
       const std::vector<std::string_view> fields = fields_of(line, names_.size());
-      if (outcome_ < fields.size()) outcome_width_ = std::max(outcome_width_, fields[outcome_].size());
+      if (outcome < fields.size()) outcome_width = std::max(outcome_width, fields[outcome].size());
       if (fields.back().empty()) return;
-      ++details_;
-      detail_width_ = std::max(detail_width_, unquoted(fields.back()).size());
+      ++details;
+      detail_width = std::max(detail_width, unquoted(fields.back()).size());
     });
+    for (std::size_t k = 0; k + 1 < names_.size(); ++k) {
+      const std::size_t width = k == outcome ? outcome_width : 8;
+      columns_.push_back({names_[k], k == 0 ? "<i8" : k == outcome ? bytes_type(width) : "<f8", width, rows_.size()});
+    }
+    columns_.push_back({"detail_run", "<i8", 8, details});
+    columns_.push_back({"detail", bytes_type(detail_width), detail_width, details});
   }
 
-  void write(const std::string& path) {
-    const std::string each = fmt::format("{},", rows_.size()), some = fmt::format("{},", details_);
-    add("sweep", bytes_type(key_.size()), "", 1, key_.size());
-    for (std::size_t k = 0; k + 1 < names_.size(); ++k) {
-      if (k == 0)
-        add(names_[k], "<i8", each, rows_.size(), 8);
-      else if (k == outcome_)
-        add(names_[k], bytes_type(outcome_width_), each, rows_.size(), outcome_width_);
-      else
-        add(names_[k], "<f8", each, rows_.size(), 8);
-    }
-    add("detail_run", "<i8", some, details_, 8);
-    add("detail", bytes_type(detail_width_), some, details_, detail_width_);
-    Archive archive(path, members_);
+  void write(const std::string& path) const {
+    eom::AtomicFile file(path);
+    if (file.partial().empty())
+      throw Error("sweep", {}, fmt::format("{} is no file, and an archive of columns needs one", model::quote(path)),
+                  "name a file, or write the table as .csv");
     try {
-      for (std::size_t i = 0; i < headers_.size(); ++i) archive.write(i, headers_[i]);
-      archive.write(0, key_);
-      fill(archive);
+      emit::ZipWriter archive(::fdopen(::fcntl(file.descriptor(), F_DUPFD_CLOEXEC, 3), "wb"), path);
+      start(archive, {"sweep", bytes_type(key_.size()), key_.size(), 1}, "");
+      archive.write(key_);
+      for (std::size_t first = 0; first < columns_.size();) first = write_columns(archive, first);
       archive.finish();
+      file.finish();
     } catch (...) {
-      archive.discard();
+      file.discard();
       throw;
     }
   }
 
  private:
-  void add(const std::string& name, const std::string& type, const std::string& shape, std::size_t count,
-           std::size_t width) {
-    headers_.push_back(npy_header(type, shape));
-    members_.push_back({name + ".npy", headers_.back().size() + count * std::max<std::size_t>(width, 1)});
+  static void start(emit::ZipWriter& archive, const Column& column, const std::string& shape) {
+    const std::string header = npy_header(column.type, shape);
+    archive.start(column.name + ".npy", header.size() + column.width * column.count);
+    archive.write(header);
   }
 
-  void fill(Archive& archive) {
-    constexpr std::size_t enough = 4096;  // rows at a time
-    std::vector<std::string> columns(members_.size());
-    for (std::size_t first = 0; first < rows_.size(); first += enough) {
-      rows_.for_each(first, std::min(first + enough, rows_.size()), [&](std::size_t run, std::string_view line) {
-        const std::vector<std::string_view> fields = fields_of(line, names_.size());
-        for (std::size_t k = 0; k + 1 < names_.size(); ++k) {
-          if (k == 0)
-            append(columns[k + 1], static_cast<std::uint64_t>(run));
-          else if (k == outcome_)
-            append(columns[k + 1], fields[k], std::max<std::size_t>(outcome_width_, 1));
-          else
-            append(columns[k + 1], value_of(fields[k]));
-        }
-        if (fields.back().empty()) return;
-        append(columns[names_.size()], static_cast<std::uint64_t>(run));
-        append(columns[names_.size() + 1], unquoted(fields.back()), detail_width_);
-      });
-      for (std::size_t i = 0; i < columns.size(); ++i) {
-        archive.write(i, columns[i]);
-        columns[i].clear();
-      }
+  /// Writes columns that fit into memory together, at least one, in one pass over the rows. Returns the next column.
+  std::size_t write_columns(emit::ZipWriter& archive, std::size_t first) const {
+    constexpr std::size_t most = 1 << 26, enough = 1 << 20;  // bytes in memory; bytes at a time of a single column
+    std::size_t last = first;
+    for (std::size_t held = 0; last < columns_.size(); ++last) {
+      held += columns_[last].width * columns_[last].count;
+      if (held > most && last > first) break;
     }
+    const auto begin = [&](std::size_t k) { start(archive, columns_[k], fmt::format("{},", columns_[k].count)); };
+    std::vector<std::string> texts(last - first);
+    const bool is_single = last == first + 1;
+    if (is_single) begin(first);
+    rows_.for_each(0, rows_.size(), [&](std::size_t run, std::string_view line) {
+      const std::vector<std::string_view> fields = fields_of(line, names_.size());
+      for (std::size_t k = first; k < last; ++k) append_entry(texts[k - first], k, run, fields);
+      if (!is_single || texts[0].size() < enough) return;
+      archive.write(texts[0]);
+      texts[0].clear();
+    });
+    for (std::size_t k = first; k < last; ++k) {
+      if (!is_single) begin(k);
+      archive.write(texts[k - first]);
+    }
+    return last;
+  }
+
+  void append_entry(std::string& text, std::size_t k, std::size_t run,
+                    const std::vector<std::string_view>& fields) const {
+    const bool is_detail = k + 1 >= names_.size();
+    if (is_detail && fields.back().empty()) return;
+    const Column& column = columns_[k];
+    if (column.type == "<i8") return append(text, static_cast<std::uint64_t>(run));
+    if (column.type == "<f8") return append(text, value_of(fields[k]));
+    const std::string bytes = is_detail ? unquoted(fields.back()) : std::string(fields[k]);
+    text.append(bytes).append(column.width - bytes.size(), '\0');
   }
 
   const Rows& rows_;
   std::string key_;
-  std::vector<std::string> names_, headers_;
-  std::vector<Archive::Member> members_;
-  std::size_t outcome_ = 0, outcome_width_ = 0, details_ = 0, detail_width_ = 0;
+  std::vector<std::string> names_;
+  std::vector<Column> columns_;
 };
 
 }  // namespace
 
 bool is_npz(const std::string& path) { return path.ends_with(".npz"); }
 
-void write_npz(const std::string& path, const std::string& key, const std::string& header, const Rows& rows) try {
+void write_npz(const std::string& path, const std::string& key, const std::string& header, const Rows& rows) {
   ColumnArchive(key, header, rows).write(path);
-} catch (const std::invalid_argument&) {
-  throw Error("sweep", {}, fmt::format("{} is no file, and an archive of columns needs one", model::quote(path)),
-              "name a file, or write the table as .csv");
 }
 
 }  // namespace eomgen::cli

@@ -12,8 +12,8 @@ namespace eomgen::cli {
 
 bool is_npz(const std::string& path);
 
-/// Requires sorted `rows`. Keeps a few thousand rows in memory at a time. Throws std::system_error, or Error if `path`
-/// is not a regular file.
+/// Requires sorted `rows`. Keeps 64 MiB of columns in memory at a time and reads the rows once for each. Throws
+/// std::system_error, or Error if `path` is not a regular file.
 void write_npz(const std::string& path, const std::string& key, const std::string& header, const Rows& rows);
 
 }  // namespace eomgen::cli

@@ -2,15 +2,22 @@
 #include "cli/sweep/row_checksum.hpp"
 
 #include <fmt/format.h>
-
-#include "emit/fmu/zip.hpp"
+#include <zlib.h>
 
 namespace eomgen::cli {
+namespace {
 
-RowChecksum::RowChecksum(std::string_view header) : of_columns_(emit::crc32(header)) {}
+std::uint32_t checksum(std::string_view bytes, std::uint32_t before) {
+  return static_cast<std::uint32_t>(
+      ::crc32_z(before, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
+}
+
+}  // namespace
+
+RowChecksum::RowChecksum(std::string_view header) : of_columns_(checksum(header, 0)) {}
 
 std::string RowChecksum::append_to(std::string_view row) const {
-  return fmt::format("{},{:08x}", row, emit::crc32(row, of_columns_));
+  return fmt::format("{},{:08x}", row, checksum(row, of_columns_));
 }
 
 bool RowChecksum::holds(std::string_view line) const {

@@ -7,12 +7,12 @@
 
 #include "emit/c/c.hpp"
 #include "emit/fmu/description.hpp"
-#include "emit/fmu/icon.hpp"
 #include "emit/fmu/runtime_sources.hpp"
 #include "emit/fmu/xml.hpp"
 #include "emit/metadata.hpp"
 #include "emit/text.hpp"
 #include "skeletons/fmu_fmi_cpp.hpp"
+#include "skeletons/fmu_icon.hpp"
 #include "skeletons/fmu_index_html.hpp"
 #include "skeletons/fmu_model_fmu_cpp.hpp"
 
@@ -88,7 +88,7 @@ std::vector<EmittedFile> emit_fmu(const program::Program& program, const Emissio
 
   std::vector<EmittedFile> files{{"modelDescription.xml", model_description(context, description, variables, token)}};
   const bool is_3 = description.version == 3;
-  files.push_back({is_3 ? "terminalsAndIcons/icon.png" : "model.png", icon_png()});
+  files.push_back({is_3 ? "terminalsAndIcons/icon.png" : "model.png", std::string(skeleton::fmu_icon)});
   files.push_back({"documentation/index.html", page(context, variables)});
   files.push_back({is_3 ? "documentation/licenses/LICENSE.txt" : "documentation/LICENSE.txt", licence});
   if (is_3) files.push_back({std::string(fmu_sources) + "buildDescription.xml", build_description(name)});

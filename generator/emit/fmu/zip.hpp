@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Archives in the zip format, without compression. In: names and contents. Out: the bytes of the archive, which depend
-// on nothing else: every entry has the earliest time of the format.
+// Archives in the zip format, without compression. In: names and contents. Out: an archive that depends on nothing
+// else: every entry has the earliest time of the format.
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,10 +13,28 @@
 
 namespace eomgen::emit {
 
-/// The checksum of zip and PNG (ISO 3309, reflected polynomial 0xedb88320). `before`: that of the bytes before these.
-std::uint32_t crc32(std::string_view bytes, std::uint32_t before = 0);
+/// Writes an archive entry by entry. All members throw std::system_error, with `name` in its text.
+class ZipWriter {
+ public:
+  /// Owns `stream`, which is seekable and empty.
+  ZipWriter(std::FILE* stream, std::string name);
+  ZipWriter(const ZipWriter&) = delete;
+  ZipWriter& operator=(const ZipWriter&) = delete;
+  ~ZipWriter();
 
-/// Throws Error if an entry or the archive exceeds 2 GB, or there are more than 65535 entries.
+  /// Starts an entry of `bytes` bytes.
+  void start(const std::string& entry, std::uint64_t bytes);
+  /// Appends to the entry.
+  void write(std::string_view bytes);
+  void finish();
+
+ private:
+  void require(int status) const;
+
+  std::string name_;
+  void* archive_;
+};
+
 std::string zip(const std::vector<EmittedFile>& files);
 
 }  // namespace eomgen::emit
