@@ -14,7 +14,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 # Library dependencies are determined from the programs. `run` calls a C compiler; the runtime's headers include Eigen.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "gcc | c-compiler, libeigen3-dev")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "gcc | c-compiler, libeigen3-dev, fonts-dejavu-core")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, texlive-latex-recommended")
 install(FILES ${PROJECT_SOURCE_DIR}/cmake/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
 include(CPack)

@@ -27,12 +27,6 @@ constexpr std::array known_extensions{
     ".xml", ".json", ".toml", ".yaml", ".md",  ".tex",  ".c",   ".h",   ".cpp", ".hpp", ".py",   ".m",    ".mat",
     ".npy", ".npz",  ".h5",   ".hdf5", ".xls", ".xlsx", ".ods", ".zip", ".gz",  ".doc", ".docx", ".webp", ".mp4"};
 
-std::string lowered(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 void remove_signs_of_zeros(Json& value) {
   if (value.is_number_float()) value = unsigned_zero(value.get<double>());
   if (!value.is_structured()) return;
@@ -72,17 +66,21 @@ std::string final_path(const std::string& path) {
 
 void require_extension(const OutputTarget& place) {
   if (place.extension.empty()) return;
-  const std::string extension = lowered(fs::path(place.path).extension().string());
+  const std::string extension = lowered_extension(place.path);
   if (extension == place.extension || (place.extension == ".html" && extension == ".htm")) return;
-  const bool chooses = !place.alternative_extension.empty();
-  const bool is_known =
-      std::find(known_extensions.begin(), known_extensions.end(), extension) != known_extensions.end();
-  if (chooses ? extension.size() < 2 || extension == place.alternative_extension : !is_known) return;
-  const auto named = [&](const std::string& other) { return fs::path(place.path).replace_extension(other).string(); };
-  refuse(place,
-         fmt::format("this option writes {}{}, and the name ends with {}", place.extension.substr(1),
-                     chooses ? " or " + place.alternative_extension.substr(1) : "", extension.substr(1)),
-         "name it " + named(place.extension) + (chooses ? " or " + named(place.alternative_extension) : ""));
+  std::vector<std::string> allowed{place.extension};
+  allowed.insert(allowed.end(), place.alternatives.begin(), place.alternatives.end());
+  const auto is_any = [&](const auto& list) { return std::find(list.begin(), list.end(), extension) != list.end(); };
+  const bool chooses = allowed.size() > 1;
+  if (chooses ? extension.size() < 2 || is_any(allowed) : !is_any(known_extensions)) return;
+  std::string formats, names;
+  for (const std::string& other : allowed) {
+    const char* const before = formats.empty() ? "" : &other == &allowed.back() ? " or " : ", ";
+    formats += before + other.substr(1);
+    names += before + fs::path(place.path).replace_extension(other).string();
+  }
+  refuse(place, fmt::format("this option writes {}, and the name ends with {}", formats, extension.substr(1)),
+         "name it " + names);
 }
 
 void require_writable(const OutputTarget& place, const std::string& model_file) {
@@ -147,6 +145,13 @@ void print_message(std::string_view text) noexcept {
   std::fflush(stderr);
 }
 
+std::string lowered_extension(const std::string& path) {
+  std::string text = fs::path(path).extension().string();
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
 bool is_standard_output(const std::string& path) {
   if (path.empty()) return false;
   if (path == "-") return true;
@@ -179,7 +184,7 @@ void require_writable_targets(const std::vector<OutputTarget>& places, const std
 
 void require_folder(const std::string& folder) {
   std::error_code none;
-  const std::string extension = lowered(fs::path(folder).extension().string());
+  const std::string extension = lowered_extension(folder);
   const bool of_a_file =
       std::find(known_extensions.begin(), known_extensions.end(), extension) != known_extensions.end();
   const OutputTarget place{"--out", folder, ""};

@@ -25,8 +25,8 @@ void print_message(std::string_view text) noexcept;
 
 /// Destination of results given by an option; `-` is standard output.
 struct OutputTarget {
-  std::string option, path, extension;     // "--out", "a.csv", ".csv"; empty extension: any
-  std::string alternative_extension = {};  // if the extension selects the format: the second one allowed
+  std::string option, path, extension;         // "--out", "a.csv", ".csv"; empty extension: any
+  std::vector<std::string> alternatives = {};  // further extensions, if the extension selects the format
 };
 
 /// Throws Error unless all `places` can be written, are distinct, differ from the model file, and have no extension of
@@ -37,6 +37,9 @@ void require_writable_targets(const std::vector<OutputTarget>& places, const std
 void require_folder(const std::string& folder);
 
 bool is_standard_output(const std::string& path);
+
+/// ".png" for a path like "a.PNG".
+std::string lowered_extension(const std::string& path);
 
 /// Writes a text to a path, completely or not at all. Returns the number of bytes. Throws Error.
 std::uint64_t write_text(const std::string& path, const std::string& text);

@@ -5,17 +5,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
-#include <filesystem>
 
-#include "cli/picture/png_file.hpp"
 #include "cli/picture/svg_picture.hpp"
 #include "cli/text_plot.hpp"
 
 namespace eomgen::cli {
 namespace {
-
-constexpr double pixels_of_a_unit = 2;  // of a PNG, for screens with high resolution
 
 std::size_t terminal_columns() {
   constexpr std::size_t usual = 80, most = 160;
@@ -24,20 +19,15 @@ std::size_t terminal_columns() {
   return std::min<std::size_t>(size.ws_col, most);
 }
 
-bool is_png(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".png";
-}
-
 }  // namespace
 
 std::uint64_t PlotFile::write(const std::function<std::string()>& svg,
                               const std::function<std::string(std::size_t columns)>& characters) const {
   if (path_ == "-") return write_text(path_, characters(terminal_columns()));
-  const std::string drawing = svg();
-  return write_text(path_, is_png(path_) ? encode_png(rasterise(drawing, pixels_of_a_unit)) : drawing);
+  const std::string drawing = svg(), extension = lowered_extension(path_);
+  return write_text(path_, extension == ".png"   ? svg_to_png(drawing)
+                           : extension == ".pdf" ? svg_to_pdf(drawing)
+                                                 : drawing);
 }
 
 std::uint64_t PlotFile::write(const eom::Plot& plot) const {

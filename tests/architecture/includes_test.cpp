@@ -47,6 +47,7 @@ const std::vector<std::pair<std::string, std::set<std::string>>> libraries = {
     {"asmjit/", {"asmjit::asmjit"}},
     {"minizip/", {"Minizip::minizip"}},
     {"zlib.h", {"Minizip::minizip"}},
+    {"cairo/", {"Cairo::cairo"}},
 };
 
 std::string place(const fs::path& file, const Include& include) {

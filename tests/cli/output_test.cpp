@@ -106,10 +106,10 @@ TEST_CASE("invalid paths, and two results for one path, are refused before any w
   refused({"run", "p.toml", "--out", ""}, "names no file");
   refused({"report", "p.toml", "--out", ""}, "names no file");
   refused({"run", "p.toml", "--out", "x.png"}, "this option writes csv, and the name ends with png");
-  refused({"run", "p.toml", "--plot", "x.PDF"}, "this option writes svg or png, and the name ends with pdf");
-  refused({"run", "p.toml", "--plot", "x.data"}, "this option writes svg or png, and the name ends with data");
-  refused({"bench", "p.toml", "--plot", "x.eps"}, "this option writes svg or png, and the name ends with eps");
-  refused({"stress", "p.toml", "--plot", "x.csv"}, "this option writes svg or png, and the name ends with csv");
+  refused({"run", "p.toml", "--plot", "x.PS"}, "this option writes svg, png or pdf, and the name ends with ps");
+  refused({"run", "p.toml", "--plot", "x.data"}, "this option writes svg, png or pdf, and the name ends with data");
+  refused({"bench", "p.toml", "--plot", "x.eps"}, "this option writes svg, png or pdf, and the name ends with eps");
+  refused({"stress", "p.toml", "--plot", "x.csv"}, "this option writes svg, png or pdf, and the name ends with csv");
   refused({"report", "p.toml", "-o", "x.pdf"}, "this option writes html, and the name ends with pdf");
   refused({"sweep", "p.toml", "--grid", "k=1,2", "-o", "x.json"}, "this option writes csv");
   refused({"bench", "p.toml", "--csv", "x.svg"}, "this option writes csv, and the name ends with svg");

@@ -87,7 +87,7 @@ Execute declare(Arguments& app) {
   app.add_flag("--no-libraries", options->no_libraries, "without the solvers of other libraries");
   app.add_output_path("-o,--out,--csv", options->csv, "the table as a CSV file");
   app.add_output_path("--plot,--svg", options->plot,
-                      "error over run time, SVG or PNG by its ending; - draws it with characters");
+                      "error over run time, SVG, PNG or PDF by its ending; - draws it with characters");
   add_approach(app, options->approach);
   add_form(app, options->form);
   return [options](const CommonOptions& common) { return execute(*options, common); };

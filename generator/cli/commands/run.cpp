@@ -256,7 +256,7 @@ Execute declare(Arguments& app) {
   app.add_option("--every", options->every, "interval of the rows of the CSV file").check(positive_number());
   app.add_output_path("-o,--out", options->out, "the table, a CSV file");
   app.add_output_path("--plot", options->plot,
-                      "a plot of the coordinates over time, SVG or PNG by its ending; - draws it with characters");
+                      "a plot of the coordinates over time, SVG, PNG or PDF by its ending; - draws it with characters");
   app.add_option("--plot-of", options->plot_of,
                  "what is plotted: a name, or x,x_dot for a phase plane; may be repeated")
       .repeated();

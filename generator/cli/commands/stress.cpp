@@ -190,7 +190,8 @@ Execute declare(Arguments& app) {
   app.add_option("--seconds", options->seconds, "a guard: a run that takes longer is interrupted and reported")
       .check(positive_number())
       .show_default();
-  app.add_output_path("--plot", options->plot, "the verdicts, SVG or PNG by its ending; - draws them with characters");
+  app.add_output_path("--plot", options->plot,
+                      "the verdicts, SVG, PNG or PDF by its ending; - draws them with characters");
   app.add_flag("--quick", options->quick, "a few variations of each kind");
   return [options](const CommonOptions& common) { return execute(*options, common); };
 }

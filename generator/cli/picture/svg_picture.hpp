@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rasteriser for the program's own plots. In: SVG as written by eom/output/svg_plot.hpp (rectangles, lines, polygonal
-// paths, circles, text, a nested SVG at some height); nothing else is supported. Out: a picture.
+// The program's own plots in other formats. In: SVG as written by eom/output/svg_plot.hpp (rectangles, lines, polygonal
+// paths, circles, text, a nested SVG at some height); nothing else is supported. Out: the bytes of a file, which depend
+// on the drawing, Cairo and the font alone.
 #pragma once
 
 #include <string>
 
-#include "cli/picture/png_file.hpp"
-
 namespace eomgen::cli {
 
-/// `scale`: pixels per unit of the drawing. Throws std::logic_error if the drawing has no size.
-Picture rasterise(const std::string& svg, double scale);
+/// A PNG with two pixels per unit of the drawing, for screens with high resolution; with fewer if it would be larger
+/// than Cairo's images. Throws std::logic_error if the drawing has no size.
+std::string svg_to_png(const std::string& svg);
+
+/// A PDF of one page. Throws std::logic_error if the drawing has no size.
+std::string svg_to_pdf(const std::string& svg);
 
 }  // namespace eomgen::cli
