@@ -23,11 +23,4 @@ std::string xml_text(std::string_view text) {
   return result;
 }
 
-std::string xml_element(const std::string& name, const XmlAttributes& attributes, bool open) {
-  std::string result = "<" + name;
-  for (const auto& [key, value] : attributes)
-    if (!value.empty()) result += " " + key + "=\"" + xml_text(value) + "\"";
-  return result + (open ? ">" : "/>");
-}
-
 }  // namespace eomgen::emit
