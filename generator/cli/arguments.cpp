@@ -67,27 +67,17 @@ Option Option::suggest_values(std::vector<std::string> words) const {
   return *this;
 }
 
-Option Arguments::add_option(const std::string& flags, std::string& target, const std::string& help) {
+template <typename T>
+Option Arguments::add_option(const std::string& flags, T& target, const std::string& help) {
   return {app_.add_option(flags, target, help), words_};
 }
-Option Arguments::add_option(const std::string& flags, double& target, const std::string& help) {
-  return {app_.add_option(flags, target, help), words_};
-}
-Option Arguments::add_option(const std::string& flags, int& target, const std::string& help) {
-  return {app_.add_option(flags, target, help), words_};
-}
-Option Arguments::add_option(const std::string& flags, std::uint64_t& target, const std::string& help) {
-  return {app_.add_option(flags, target, help), words_};
-}
-Option Arguments::add_option(const std::string& flags, std::optional<std::string>& target, const std::string& help) {
-  return {app_.add_option(flags, target, help), words_};
-}
-Option Arguments::add_option(const std::string& flags, std::optional<double>& target, const std::string& help) {
-  return {app_.add_option(flags, target, help), words_};
-}
-Option Arguments::add_option(const std::string& flags, std::vector<std::string>& target, const std::string& help) {
-  return {app_.add_option(flags, target, help), words_};
-}
+template Option Arguments::add_option(const std::string&, std::string&, const std::string&);
+template Option Arguments::add_option(const std::string&, double&, const std::string&);
+template Option Arguments::add_option(const std::string&, int&, const std::string&);
+template Option Arguments::add_option(const std::string&, std::uint64_t&, const std::string&);
+template Option Arguments::add_option(const std::string&, std::optional<std::string>&, const std::string&);
+template Option Arguments::add_option(const std::string&, std::optional<double>&, const std::string&);
+template Option Arguments::add_option(const std::string&, std::vector<std::string>&, const std::string&);
 Option Arguments::add_flag(const std::string& flags, bool& target, const std::string& help) {
   return {app_.add_flag(flags, target, help), words_};
 }

@@ -50,14 +50,9 @@ class Arguments {
  public:
   Arguments(CLI::App& app, SuggestedValues& words) : app_(app), words_(words) {}
 
-  /// Flags without hyphens declare a positional argument.
-  Option add_option(const std::string& flags, std::string& target, const std::string& help);
-  Option add_option(const std::string& flags, double& target, const std::string& help);
-  Option add_option(const std::string& flags, int& target, const std::string& help);
-  Option add_option(const std::string& flags, std::uint64_t& target, const std::string& help);
-  Option add_option(const std::string& flags, std::optional<std::string>& target, const std::string& help);
-  Option add_option(const std::string& flags, std::optional<double>& target, const std::string& help);
-  Option add_option(const std::string& flags, std::vector<std::string>& target, const std::string& help);
+  /// Flags without hyphens declare a positional argument. arguments.cpp lists the types of targets.
+  template <typename T>
+  Option add_option(const std::string& flags, T& target, const std::string& help);
   Option add_flag(const std::string& flags, bool& target, const std::string& help);
 
   /// Adds an option for an output file or folder, the same in all commands. An empty path is an error.
