@@ -15,39 +15,16 @@ namespace eomgen::cli {
 namespace {
 
 /// Names of commands in other programs.
-constexpr std::pair<const char*, const char*> other_words[] = {{"simulate", "run"},
-                                                               {"sim", "run"},
-                                                               {"integrate", "run"},
-                                                               {"solve", "run"},
-                                                               {"plot", "run"},
-                                                               {"init", "new"},
-                                                               {"create", "new"},
-                                                               {"start", "new"},
-                                                               {"generate", "emit"},
-                                                               {"codegen", "emit"},
-                                                               {"compile", "emit"},
-                                                               {"export", "emit"},
-                                                               {"latex", "emit"},
-                                                               {"equations", "derive"},
-                                                               {"eom", "derive"},
-                                                               {"show", "derive"},
-                                                               {"print", "derive"},
-                                                               {"validate", "check"},
-                                                               {"lint", "check"},
-                                                               {"info", "check"},
-                                                               {"test", "verify"},
-                                                               {"prove", "verify"},
-                                                               {"benchmark", "bench"},
-                                                               {"scan", "sweep"},
-                                                               {"grid", "sweep"},
-                                                               {"eigenvalues", "linearize"},
-                                                               {"linearise", "linearize"},
-                                                               {"stability", "equilibria"},
-                                                               {"equilibrium", "equilibria"},
-                                                               {"html", "report"},
-                                                               {"models", "list"},
-                                                               {"ls", "list"},
-                                                               {"solvers", "list"}};
+// clang-format off
+constexpr std::pair<const char*, const char*> other_words[] = {
+    {"simulate", "run"}, {"sim", "run"}, {"integrate", "run"}, {"solve", "run"}, {"plot", "run"}, {"init", "new"},
+    {"create", "new"}, {"start", "new"}, {"generate", "emit"}, {"codegen", "emit"}, {"compile", "emit"},
+    {"export", "emit"}, {"latex", "emit"}, {"equations", "derive"}, {"eom", "derive"}, {"show", "derive"},
+    {"print", "derive"}, {"validate", "check"}, {"lint", "check"}, {"info", "check"}, {"test", "verify"},
+    {"prove", "verify"}, {"benchmark", "bench"}, {"scan", "sweep"}, {"grid", "sweep"}, {"eigenvalues", "linearize"},
+    {"linearise", "linearize"}, {"stability", "equilibria"}, {"equilibrium", "equilibria"}, {"html", "report"},
+    {"models", "list"}, {"ls", "list"}, {"solvers", "list"}};
+// clang-format on
 
 }  // namespace
 

@@ -17,41 +17,13 @@ namespace eomgen::emit {
 namespace {
 
 // Functions that the module wraps.
-constexpr const char* wrapped_functions[] = {"rhs",
-                                             "jac",
-                                             "jac_p",
-                                             "jac_u",
-                                             "jvp",
-                                             "vjp",
-                                             "adjoint",
-                                             "hvp",
-                                             "inverse",
-                                             "coriolis",
-                                             "gravity",
-                                             "mass",
-                                             "momenta",
-                                             "momenta_jac",
-                                             "momenta_jac_p",
-                                             "momenta_jac_u",
-                                             "constraints",
-                                             "reactions",
-                                             "outputs",
-                                             "events",
-                                             "contact_rows",
-                                             "rhs_open",
-                                             "power",
-                                             "resets",
-                                             "frames",
-                                             "energy_gradients",
-                                             "taylor",
-                                             "regressor",
-                                             "momentum",
-                                             "reactions_jac",
-                                             "reactions_jac_p",
-                                             "reactions_jac_u",
-                                             "outputs_jac",
-                                             "outputs_jac_p",
-                                             "outputs_jac_u"};
+// clang-format off
+constexpr const char* wrapped_functions[] = {
+    "rhs", "jac", "jac_p", "jac_u", "jvp", "vjp", "adjoint", "hvp", "inverse", "coriolis", "gravity", "mass", "momenta",
+    "momenta_jac", "momenta_jac_p", "momenta_jac_u", "constraints", "reactions", "outputs", "events", "contact_rows",
+    "rhs_open", "power", "resets", "frames", "energy_gradients", "taylor", "regressor", "momentum", "reactions_jac",
+    "reactions_jac_p", "reactions_jac_u", "outputs_jac", "outputs_jac_p", "outputs_jac_u"};
+// clang-format on
 
 /// _rhs = _function("rhs", "daaaia"): one letter per argument type.
 std::string c_function_declarations() {
