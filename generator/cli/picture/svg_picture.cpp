@@ -20,6 +20,7 @@ namespace eomgen::cli {
 namespace {
 
 constexpr const char* font = "DejaVu Sans";
+constexpr double usual_size = 12.5;
 
 std::vector<double> numbers(const std::string& text) {
   std::vector<double> result;
@@ -33,14 +34,28 @@ std::vector<double> numbers(const std::string& text) {
   return result;
 }
 
-double number(const pugi::xml_node& node, const char* name, double otherwise = 0) {
-  const std::vector<double> values = numbers(node.attribute(name).value());
+double number(const std::string& text, double otherwise) {
+  const std::vector<double> values = numbers(text);
   return values.empty() ? otherwise : values[0];
+}
+
+double number(const pugi::xml_node& node, const char* name, double otherwise = 0) {
+  return number(node.attribute(name).value(), otherwise);
+}
+
+struct Release {
+  void operator()(cairo_t* context) const { cairo_destroy(context); }
+  void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
+};
+using Surface = std::unique_ptr<cairo_surface_t, Release>;
+
+void require(cairo_status_t status) {
+  if (status != CAIRO_STATUS_SUCCESS) throw std::runtime_error(cairo_status_to_string(status));
 }
 
 class Painter {
  public:
-  explicit Painter(cairo_surface_t* surface) : cairo_(cairo_create(surface)) {
+  explicit Painter(const Surface& surface) : context_(cairo_create(surface.get())), cairo_(context_.get()) {
     cairo_set_line_cap(cairo_, CAIRO_LINE_CAP_ROUND);
     cairo_set_line_join(cairo_, CAIRO_LINE_JOIN_ROUND);
     cairo_font_options_t* const options = cairo_font_options_create();
@@ -50,9 +65,7 @@ class Painter {
     cairo_set_font_options(cairo_, options);
     cairo_font_options_destroy(options);
   }
-  ~Painter() { cairo_destroy(cairo_); }
-  Painter(const Painter&) = delete;
-  Painter& operator=(const Painter&) = delete;
+  void require_success() const { require(cairo_status(cairo_)); }
 
   void draw(const pugi::xml_node& node) {
     const std::string name = node.name();
@@ -141,7 +154,7 @@ class Painter {
 
   /// Calls `take` with the parts of a text, each <tspan dy=".." font-size=".."> or the text between.
   void for_each_part(const pugi::xml_node& node, const std::function<void(const char* text, double dy)>& take) {
-    const double size = std::stod("0" + inherited(node, "font-size"));
+    const double size = number(inherited(node, "font-size"), usual_size);
     for (const pugi::xml_node& part : node.children()) {
       const bool is_span = part.type() == pugi::node_element;
       cairo_set_font_size(cairo_, is_span ? number(part, "font-size", size) : size);
@@ -175,21 +188,13 @@ class Painter {
     cairo_restore(cairo_);
   }
 
-  cairo_t* const cairo_;
+  std::unique_ptr<cairo_t, Release> context_;
+  cairo_t* cairo_;
 };
-
-struct SurfaceRelease {
-  void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
-};
-using Surface = std::unique_ptr<cairo_surface_t, SurfaceRelease>;
 
 cairo_status_t append(void* text, const unsigned char* bytes, unsigned length) {
   static_cast<std::string*>(text)->append(reinterpret_cast<const char*>(bytes), length);
   return CAIRO_STATUS_SUCCESS;
-}
-
-void require(cairo_status_t status) {
-  if (status != CAIRO_STATUS_SUCCESS) throw std::runtime_error(cairo_status_to_string(status));
 }
 
 struct Drawing {
@@ -201,9 +206,10 @@ struct Drawing {
   }
   void draw(const Surface& surface, double scale) const {
     cairo_surface_set_device_scale(surface.get(), scale, scale);
-    Painter(surface.get()).draw(document.first_child());
+    Painter painter(surface);
+    painter.draw(document.first_child());
+    painter.require_success();
     cairo_surface_flush(surface.get());
-    require(cairo_surface_status(surface.get()));
   }
 
   pugi::xml_document document;
