@@ -14,7 +14,7 @@ COPY --from=build /package/*.deb /package/
 RUN apt-get update \
  && apt-get install -y --no-install-recommends /package/*.deb gcc g++ libc6-dev libeigen3-dev \
  && rm -rf /package /var/lib/apt/lists/*
-ENV EOMGEN_CACHE_DIR=/tmp/eomgen
+ENV EOMGEN_CACHE_DIR=/tmp/eomgen XDG_CACHE_HOME=/tmp
 WORKDIR /work
 ENTRYPOINT ["eomgen"]
 CMD ["--help"]
