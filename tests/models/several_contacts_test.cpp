@@ -8,6 +8,7 @@
 
 #include "models/contact_runs.hpp"
 #include "models/rough.hpp"
+#include "run/event_list.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
@@ -168,6 +169,25 @@ TEST_CASE("woodpecker: it reaches the limit cycle of its published data, with th
       CHECK(events[i].kind == first[i].kind);
       CHECK(events[i].name == first[i].name);
       CHECK(std::abs(events[i].t - first[i].t) < 1e-5);
+    }
+  }
+}
+
+TEST_CASE("bounces that accumulate: the list of events is the same at all tolerances") {
+  for (const char* model : {"ball_chain", "disc_pile"}) {
+    CAPTURE(model);
+    std::vector<run::ListedEvent> first;
+    for (const double rtol : all_tolerances) {
+      CAPTURE(rtol);
+      const FinishedRun run = run_rough(model, "default", at_tolerance(rtol));
+      const std::vector<run::ListedEvent> events = run::list_events(events_of(run), run.simulation.scene.t0);
+      if (first.empty()) first = events;
+      REQUIRE(events.size() == first.size());
+      for (std::size_t i = 0; i < events.size(); ++i) {
+        CHECK(events[i].event.kind == first[i].event.kind);
+        CHECK(events[i].event.name == first[i].event.name);
+        CHECK(std::abs(events[i].event.t - first[i].event.t) < 1e-5);
+      }
     }
   }
 }
