@@ -2,7 +2,6 @@
 #include "work.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cstdio>
 #include <mutex>
 #include <utility>

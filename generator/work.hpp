@@ -6,7 +6,6 @@
 
 #include <atomic>
 #include <cstddef>
-#include <limits>
 #include <stdexcept>
 #include <string>
 

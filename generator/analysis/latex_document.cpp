@@ -10,7 +10,6 @@
 #include "analysis/steady_search.hpp"
 #include "conservation/conservative.hpp"
 #include "derive/formulations/lagrange.hpp"
-#include "mechanics/dependent_coordinates.hpp"
 #include "pipeline/pipeline.hpp"
 #include "print/article.hpp"
 #include "reading/forms.hpp"

@@ -4,7 +4,6 @@
 #include <dlfcn.h>
 
 #include <chrono>
-#include <cmath>
 #include <cstring>
 
 #include "bench/median_time.hpp"

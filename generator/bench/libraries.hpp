@@ -3,7 +3,6 @@
 // demand.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>

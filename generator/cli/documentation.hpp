@@ -2,7 +2,6 @@
 // The pages of docs/ in the program, and the search for a topic in them.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>

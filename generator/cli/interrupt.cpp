@@ -3,8 +3,6 @@
 
 #include <csignal>
 
-#include "work.hpp"
-
 namespace eomgen::cli {
 namespace {
 

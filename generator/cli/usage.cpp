@@ -4,12 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <utility>
 
 #include "cli/locate.hpp"
-#include "model/names.hpp"
 
 namespace eomgen::cli {
 namespace {

@@ -2,8 +2,6 @@
 #include "emit/names.hpp"
 
 #include <algorithm>
-#include <span>
-#include <string_view>
 
 #include "emit/context.hpp"
 

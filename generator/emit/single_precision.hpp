@@ -3,8 +3,6 @@
 // self-test at states that are single-precision numbers, and the loss of accuracy, which the certificate reports.
 #pragma once
 
-#include <string>
-
 #include "emit/straight_line.hpp"
 
 namespace eomgen::emit {

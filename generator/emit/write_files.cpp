@@ -4,9 +4,6 @@
 #include <cerrno>
 #include <eom/output/atomic_file.hpp>
 #include <filesystem>
-#include <system_error>
-
-#include "error.hpp"
 
 namespace eomgen::emit {
 namespace {

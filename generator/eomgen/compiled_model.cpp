@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <eom/modes/contacts.hpp>
 #include <limits>
-#include <optional>
 
 #include "derive/frames.hpp"
 #include "derive/inertias.hpp"

@@ -4,7 +4,6 @@
 #include <cln/rational_io.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <sstream>
 
 #include "analysis/equations.hpp"

@@ -3,7 +3,6 @@
 // In: texts such as "-1.50e-3". Out: values in extended precision, and decimals for the model file.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 #include <string_view>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Mesh files of a robot as [draw] meshes of few triangles.
-#include <fmt/format.h>
 
 #include <algorithm>
 

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <eom/modes/mode_array.hpp>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "jit/steps.hpp"

@@ -2,7 +2,6 @@
 #include "jit/lane_encode.hpp"
 
 #include <algorithm>
-#include <cstddef>
 #include <stdexcept>
 
 #include "jit/assembler.hpp"

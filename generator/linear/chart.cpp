@@ -2,7 +2,6 @@
 #include "linear/chart.hpp"
 
 #include <algorithm>
-#include <array>
 #include <eom/layout.hpp>
 #include <tuple>
 

@@ -4,7 +4,6 @@
 #include <cln/exception.h>
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <type_traits>

@@ -5,7 +5,6 @@
 #include <cln/real.h>
 
 #include <algorithm>
-#include <functional>
 #include <limits>
 #include <set>
 #include <stdexcept>

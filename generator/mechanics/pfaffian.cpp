@@ -10,7 +10,6 @@
 #include "mechanics/small.hpp"
 #include "numeric/elimination.hpp"
 #include "symbolic/evaluate.hpp"
-#include "symbolic/polynomial.hpp"
 #include "symbolic/sample.hpp"
 #include "symbolic/zero_proof.hpp"
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_set>
 
 #include "model/mentions.hpp"
 #include "rotations/rotation.hpp"

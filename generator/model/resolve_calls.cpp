@@ -3,8 +3,6 @@
 #include <cln/rational.h>
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "model/resolver.hpp"
 
 namespace eomgen::model {

@@ -7,7 +7,6 @@
 
 #include "abi/functions.hpp"
 #include "emit/single_precision.hpp"
-#include "emit/targets.hpp"
 #include "error.hpp"
 #include "model/names.hpp"
 #include "numeric/numbers.hpp"

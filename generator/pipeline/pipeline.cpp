@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 
 #include "derive/formulations.hpp"
 #include "derive/frames.hpp"

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/simulate.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <eom/hybrid/solved_contacts.hpp>
 #include <eom/modes/contacts.hpp>
 #include <eom/registry.hpp>
 #include <limits>
 
-#include "error.hpp"
 #include "pipeline/beyond_range.hpp"
 #include "pipeline/bound_run.hpp"
 #include "pipeline/contact_outputs.hpp"

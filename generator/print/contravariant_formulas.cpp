@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The contravariant form of the equations, and the bases of E^3N, as formulas.
-#include <algorithm>
 
 #include "print/formulas.hpp"
 #include "print/render.hpp"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contacts as formulas: directions of sliding, slip, normal force, the law in every mode, eqs. (2.33), (2.40), (2.47).
-#include <algorithm>
 
 #include "mechanics/imposition.hpp"
 #include "print/formulas.hpp"

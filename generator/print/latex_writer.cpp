@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "print/latex_writer.hpp"
 
-#include <algorithm>
 #include <cctype>
 #include <iterator>
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The solved equations as formulas: accelerations, multipliers, constraint forces as vectors, friction that holds.
-#include <algorithm>
 
 #include "print/formulas.hpp"
 #include "print/named_lengths.hpp"

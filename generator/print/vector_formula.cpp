@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "print/vector_formula.hpp"
 
-#include <algorithm>
-
 #include "print/formulas.hpp"
 
 namespace eomgen::print {

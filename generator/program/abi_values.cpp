@@ -2,7 +2,6 @@
 #include "program/abi_values.hpp"
 
 #include <cln/rational.h>
-#include <cln/real.h>
 
 #include <algorithm>
 #include <cmath>

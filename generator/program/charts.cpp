@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/charts.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "error.hpp"

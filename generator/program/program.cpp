@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/program.hpp"
 
-#include <optional>
-#include <string_view>
-
 namespace eomgen::program {
 
 Program::Program() = default;

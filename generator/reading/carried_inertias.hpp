@@ -9,7 +9,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "mechanics/mechanics.hpp"
 #include "reading/column_relations.hpp"

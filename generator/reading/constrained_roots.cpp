@@ -4,7 +4,6 @@
 #include <cln/rational.h>
 
 #include <algorithm>
-#include <optional>
 
 #include "reading/reading.hpp"
 #include "reading/trig.hpp"

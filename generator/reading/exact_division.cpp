@@ -4,7 +4,6 @@
 #include <cln/integer.h>
 
 #include <algorithm>
-#include <array>
 #include <unordered_map>
 
 #include "symbolic/small_numbers.hpp"

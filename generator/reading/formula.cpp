@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "reading/formula.hpp"
 
-#include <algorithm>
-
 namespace eomgen::reading {
 
 Formula number(const Rational& value) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bases (1.20), (1.22), metric (1.31), Christoffel symbols (2.184), (2.185) of one particle's coordinates, and of the
 // whole system's configuration manifold.
-#include <algorithm>
 #include <stdexcept>
 #include <string>
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "reading/lagrangian.hpp"
 
-#include <algorithm>
-
 #include "reading/trig.hpp"
 
 namespace eomgen::reading {

@@ -9,9 +9,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <tuple>
 
-#include "reading/formula.hpp"
 #include "reading/power_of_sum.hpp"
 #include "reading/rational_function.hpp"
 

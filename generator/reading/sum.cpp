@@ -3,8 +3,6 @@
 
 #include <cln/integer.h>
 
-#include <algorithm>
-
 namespace eomgen::reading {
 namespace {
 

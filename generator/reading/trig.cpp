@@ -3,7 +3,6 @@
 
 #include <cln/integer.h>
 
-#include <algorithm>
 #include <tuple>
 #include <unordered_map>
 

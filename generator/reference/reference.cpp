@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "error.hpp"
+#include "program/taylor.hpp"
 #include "reference/consistent_start.hpp"
 #include "reference/expansion.hpp"
 

@@ -10,7 +10,6 @@
 
 #include "model/lone_parameter.hpp"
 #include "model/names.hpp"
-#include "run/scene.hpp"
 #include "symbolic/evaluate.hpp"
 #include "symbolic/sample.hpp"
 

@@ -7,7 +7,6 @@
 #include <eom/automatic.hpp>
 #include <eom/hybrid/methods.hpp>
 #include <eom/hybrid/segments.hpp>
-#include <utility>
 
 #include "model/names.hpp"
 #include "run/bind.hpp"

@@ -8,9 +8,7 @@
 #include <cmath>
 #include <eom/hybrid/jumps.hpp>
 #include <eom/hybrid/samples.hpp>
-#include <eom/hybrid/time_analysis.hpp>
 #include <limits>
-#include <optional>
 
 #include "derive/imposition.hpp"
 #include "model/charts.hpp"

@@ -7,7 +7,6 @@
 
 #include <eom/hybrid/time_analysis.hpp>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>

@@ -9,7 +9,6 @@
 
 #include "run/central_differences.hpp"
 #include "run/contact_changes.hpp"
-#include "run/leaving_sides.hpp"
 
 namespace eomgen::run {
 namespace {

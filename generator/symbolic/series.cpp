@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "symbolic/series.hpp"
 
-#include <stdexcept>
-
 #include "symbolic/evaluate.hpp"
 #include "symbolic/functions.hpp"
 

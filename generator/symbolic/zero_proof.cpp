@@ -6,7 +6,6 @@
 #include <unordered_map>
 
 #include "symbolic/calculus.hpp"
-#include "symbolic/polynomial.hpp"
 
 namespace eomgen::symbolic {
 namespace {

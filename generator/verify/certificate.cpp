@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <eom/modes/contact_state.hpp>
 
 #include "derive/formulations.hpp"

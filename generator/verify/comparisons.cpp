@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <stdexcept>
 
 #include "symbolic/evaluate.hpp"
 #include "verify/applied_forces.hpp"

@@ -4,7 +4,6 @@
 #include <cln/real.h>
 
 #include <algorithm>
-#include <set>
 
 #include "verify/affine_residual_cache.hpp"
 #include "verify/applied_forces.hpp"

@@ -17,7 +17,6 @@
 #include <memory>
 #include <optional>
 #include <set>
-#include <string>
 #include <vector>
 
 #include "verify/interpreter.hpp"

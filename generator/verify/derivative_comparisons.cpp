@@ -14,7 +14,6 @@
 #include "verify/abi_arguments.hpp"
 #include "verify/applied_forces.hpp"
 #include "verify/central_differences.hpp"
-#include "verify/function_comparisons.hpp"
 
 namespace eomgen::verify {
 namespace {

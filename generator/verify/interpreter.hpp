@@ -8,9 +8,6 @@
 #include <array>
 #include <map>
 #include <memory>
-#include <optional>
-#include <set>
-#include <string>
 #include <tuple>
 #include <unordered_map>
 #include <vector>

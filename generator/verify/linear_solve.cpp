@@ -8,7 +8,6 @@
 #include <cln/real.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <optional>

@@ -5,9 +5,7 @@
 #include <cln/rational.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
-#include <vector>
 
 namespace eomgen::verify {
 namespace {

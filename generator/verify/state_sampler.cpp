@@ -3,14 +3,12 @@
 
 #include <cln/float.h>
 #include <cln/integer.h>
-#include <cln/rational.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "error.hpp"
-#include "verify/linear_solve.hpp"
 
 namespace eomgen::verify {
 namespace {

@@ -2,8 +2,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <optional>
-
 #include "analysis/benchmark.hpp"
 #include "cli/bench_report.hpp"
 #include "cli/commands/commands.hpp"

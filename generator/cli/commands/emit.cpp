@@ -11,7 +11,6 @@
 #include "cli/operations.hpp"
 #include "cli/output.hpp"
 #include "cli/shared_options.hpp"
-#include "cli/usage.hpp"
 #include "pipeline/archives.hpp"
 #include "pipeline/emission.hpp"
 #include "print/article.hpp"

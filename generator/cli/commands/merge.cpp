@@ -18,7 +18,6 @@
 #include "cli/sweep/points.hpp"
 #include "cli/sweep/rows.hpp"
 #include "cli/sweep/statistics.hpp"
-#include "cli/usage.hpp"
 #include "emit/write_files.hpp"
 #include "model/names.hpp"
 

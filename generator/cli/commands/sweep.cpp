@@ -10,7 +10,6 @@
 #include "cli/commands/commands.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
-#include "cli/usage.hpp"
 
 namespace eomgen::cli::sweep_command {
 namespace {

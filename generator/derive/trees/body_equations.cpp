@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "derive/equations.hpp"
 #include "derive/trees/body_recursion.hpp"
 #include "derive/trees/tree_reduction.hpp"
 #include "mechanics/vanishes.hpp"

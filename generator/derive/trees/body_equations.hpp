@@ -4,7 +4,6 @@
 
 #include <optional>
 
-#include "derive/equations.hpp"
 #include "derive/trees/body_motion.hpp"
 
 namespace eomgen::derive {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "derive/trees/body_residual.hpp"
 
-#include <algorithm>
-
 #include "derive/trees/body_compliance.hpp"
 #include "derive/trees/body_elimination.hpp"
 #include "derive/trees/body_recursion.hpp"

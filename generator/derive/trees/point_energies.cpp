@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <map>
 
-#include "mechanics/vanishes.hpp"
 #include "symbolic/antiderivative.hpp"
 
 namespace eomgen::derive {

@@ -4,7 +4,6 @@
 // absolute description, M_q = S^T M_theta S, and far cheaper to form and to solve.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "mechanics/mechanics.hpp"

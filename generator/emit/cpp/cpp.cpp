@@ -10,7 +10,6 @@
 #include "emit/signature.hpp"
 #include "emit/taylor.hpp"
 #include "emit/text.hpp"
-#include "program/taylor.hpp"
 #include "skeletons/cpp_model_hpp.hpp"
 
 namespace eomgen::emit {

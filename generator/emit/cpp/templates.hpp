@@ -2,13 +2,11 @@
 // Functions as templates over the scalar type, shared by the targets cpp and cuda.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "emit/straight_line.hpp"
-#include "program/taylor.hpp"
 
 namespace eomgen::emit {
 

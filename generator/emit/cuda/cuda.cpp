@@ -3,8 +3,6 @@
 
 #include "emit/cpp/templates.hpp"
 #include "emit/metadata.hpp"
-#include "emit/names.hpp"
-#include "emit/parts.hpp"
 #include "error.hpp"
 #include "skeletons/cuda_model_cuh.hpp"
 #include "skeletons/cuda_model_ensemble_cu.hpp"
