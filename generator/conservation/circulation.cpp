@@ -16,10 +16,6 @@ namespace eomgen::conservation {
 namespace {
 
 using mechanics::Vec3;
-using symbolic::Dag;
-using symbolic::Ref;
-using symbolic::Symbol;
-using symbolic::SymbolKind;
 
 Symbol coordinate(std::size_t i) { return {SymbolKind::coordinate, static_cast<std::uint32_t>(i), 0}; }
 

@@ -14,12 +14,7 @@ namespace eomgen::conservation {
 
 using derive::generalized_forces;
 using mechanics::constraint_substitution;
-using mechanics::Mechanics;
 using mechanics::time_function_substitution;
-using symbolic::Dag;
-using symbolic::Ref;
-using symbolic::Symbol;
-using symbolic::SymbolKind;
 using system::OutputKind;
 
 namespace {

@@ -13,6 +13,12 @@
 
 namespace eomgen::conservation {
 
+using mechanics::Mechanics;
+using symbolic::Dag;
+using symbolic::Ref;
+using symbolic::Symbol;
+using symbolic::SymbolKind;
+
 /// The certainty that an expression vanishes for all values of its symbols.
 enum class Certainty { no, numerical, proven };
 const char* name(Certainty certainty);  // "no", "numerical", "proven"

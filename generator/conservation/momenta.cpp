@@ -21,13 +21,8 @@ namespace {
 
 using derive::generalized_forces;
 using mechanics::constraint_substitution;
-using mechanics::Mechanics;
 using mechanics::time_function_substitution;
 using mechanics::Vec3;
-using symbolic::Dag;
-using symbolic::Ref;
-using symbolic::Symbol;
-using symbolic::SymbolKind;
 
 constexpr double screening = 1e-5;  // candidates are then tested in many digits
 // Budget of expanding J^T J, which finds zeros for orthogonal coordinates: products of two terms, and terms of one

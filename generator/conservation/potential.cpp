@@ -15,11 +15,7 @@
 namespace eomgen::conservation {
 namespace {
 
-using symbolic::Dag;
 using symbolic::Op;
-using symbolic::Ref;
-using symbolic::Symbol;
-using symbolic::SymbolKind;
 
 Symbol coordinate_symbol(std::size_t i) { return {SymbolKind::coordinate, static_cast<std::uint32_t>(i), 0}; }
 

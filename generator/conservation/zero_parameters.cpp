@@ -9,10 +9,7 @@
 namespace eomgen::conservation {
 namespace {
 
-using mechanics::Mechanics;
 using mechanics::Vec3;
-using symbolic::Ref;
-using symbolic::SymbolKind;
 
 using Parameters = std::vector<std::uint32_t>;
 

@@ -13,8 +13,6 @@
 namespace eomgen::derive {
 namespace {
 
-using symbolic::Symbol;
-using symbolic::SymbolKind;
 using system::EquationSystem;
 using system::OutputKind;
 

@@ -12,9 +12,6 @@ namespace {
 using mechanics::decompose_place;
 using mechanics::PlaceDecomposition;
 
-using symbolic::Symbol;
-using symbolic::SymbolKind;
-
 /// A vector with its first and second time derivatives. With the coordinates they contain qdot and qddot.
 struct Motion {
   Vec3 value, rate, second;

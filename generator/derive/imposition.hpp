@@ -13,8 +13,11 @@ using mechanics::constraint_substitution;
 using mechanics::Mechanics;
 using mechanics::time_function_substitution;
 using mechanics::Vec3;
+using symbolic::cross;
 using symbolic::Dag;
 using symbolic::Ref;
+using symbolic::Symbol;
+using symbolic::SymbolKind;
 
 /// The states of first order of the system in the order of Model::states: those that the model declares, integrals of
 /// functions of time without a closed form (time_function_substitution), discrete values.

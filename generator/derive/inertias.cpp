@@ -9,9 +9,6 @@
 
 namespace eomgen::derive {
 
-using symbolic::Symbol;
-using symbolic::SymbolKind;
-
 system::Inertias inertias(Mechanics& m) {
   Dag& dag = *m.dag;
   const model::Model& model = *m.model;

@@ -6,9 +6,6 @@
 namespace eomgen::derive {
 namespace {
 
-using symbolic::Symbol;
-using symbolic::SymbolKind;
-
 Symbol rate_symbol(std::uint32_t i) { return {SymbolKind::coordinate, i, 1}; }
 
 /// The contribution of varying masses and of prescribed parts of positions.

@@ -13,7 +13,6 @@ namespace {
 using program::ArrayRun;
 using program::ArraySpace;
 using program::ProgramLoop;
-using program::Slot;
 
 const char* name(ArraySpace space) {
   switch (space) {

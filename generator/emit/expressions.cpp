@@ -9,11 +9,6 @@
 
 namespace eomgen::emit {
 
-using program::Function;
-using program::Instruction;
-using program::Operand;
-using program::Slot;
-using symbolic::Op;
 using Expression = Expressions::Expression;
 
 namespace {

@@ -13,7 +13,6 @@
 namespace eomgen::emit {
 namespace {
 
-using program::Function;
 using program::Program;
 
 const Function* find(const Program& program, const std::string& name) {

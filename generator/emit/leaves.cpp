@@ -11,8 +11,6 @@
 namespace eomgen::emit {
 namespace {
 
-using program::Slot;
-
 /// An entry of `mode`, which may be null.
 std::string mode_entry(const ModelNames& names, std::size_t entry) {
   return fmt::format("({0} ? {0}[{1}] : 0)", names.mode, entry);

@@ -11,8 +11,6 @@
 
 namespace eomgen::emit {
 
-using program::Slot;
-
 namespace {
 
 Argument argument(abi::Input input, const ModelNames& names) {

@@ -17,11 +17,6 @@
 namespace eomgen::emit {
 namespace {
 
-using program::Function;
-using program::Instruction;
-using program::Operand;
-using program::Slot;
-using symbolic::Op;
 using Expression = Expressions::Expression;
 
 // Return code of a function that assumed small angles and found a large one.

@@ -13,6 +13,12 @@
 
 namespace eomgen::emit {
 
+using program::Function;
+using program::Instruction;
+using program::Operand;
+using program::Slot;
+using symbolic::Op;
+
 /// Syntax that differs between the languages of the C family.
 struct Dialect {
   std::string real;                                    // "double", "Real"

@@ -8,10 +8,6 @@
 
 namespace eomgen::emit {
 
-using program::Instruction;
-using program::Operand;
-using program::Slot;
-
 Uses count_uses(const program::Function& function) {
   const std::vector<Instruction>& code = function.code;
   Uses uses{program::assign_parts(function), {}, {}, {}};

@@ -7,11 +7,6 @@
 
 namespace eomgen::emit {
 
-using program::Instruction;
-using program::Operand;
-using program::Slot;
-using symbolic::Op;
-
 std::string suggested_name(const std::string& pattern, const ModelNames& names) {
   std::string result;
   for (std::size_t i = 0; i < pattern.size(); ++i) {

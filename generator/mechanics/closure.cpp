@@ -20,8 +20,6 @@ namespace eomgen::mechanics {
 namespace {
 
 using cln::cl_R;
-using symbolic::Symbol;
-using symbolic::SymbolKind;
 
 constexpr int digits = 50;
 constexpr int steps = 120;             // near dependent rows, Newton steps halve the distance down to `dependent`

@@ -11,9 +11,6 @@
 namespace eomgen::mechanics {
 namespace {
 
-using symbolic::Symbol;
-using symbolic::SymbolKind;
-
 std::set<std::uint32_t> coordinates_in(const Dag& dag, Ref expression) {
   std::set<std::uint32_t> result;
   for (const Symbol& symbol : dag.symbols({expression})) {

@@ -9,8 +9,6 @@
 namespace eomgen::mechanics {
 namespace {
 
-using symbolic::SymbolKind;
-
 /// Adds inputs to a copy of the model.
 class InputAdder {
  public:

@@ -15,8 +15,6 @@
 namespace eomgen::mechanics {
 namespace {
 
-using symbolic::SymbolKind;
-
 class ContactReader {
  public:
   ContactReader(Mechanics& m, Lowering& lower) : m_(m), lower_(lower), dag_(*m.dag), expand_(dag_, 60) {}

@@ -8,9 +8,6 @@
 namespace eomgen::mechanics {
 namespace {
 
-using symbolic::Symbol;
-using symbolic::SymbolKind;
-
 bool moves(const Dag& dag, Ref expression) {
   const std::vector<Symbol> symbols = dag.symbols({expression});
   return std::any_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind == SymbolKind::coordinate; });

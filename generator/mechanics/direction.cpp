@@ -8,9 +8,6 @@
 namespace eomgen::mechanics {
 namespace {
 
-using symbolic::Op;
-using symbolic::SymbolKind;
-
 constexpr std::size_t term_budget = 60, most_nodes = 64;
 
 bool depends_on_coordinates(const Dag& dag, Ref r) {

@@ -17,7 +17,6 @@ namespace eomgen::mechanics {
 namespace {
 
 using symbolic::Dag;
-using symbolic::Op;
 
 constexpr const char* out_of_range = "it is larger than the largest double, 1.8e308";
 

@@ -8,9 +8,6 @@
 namespace eomgen::mechanics {
 namespace {
 
-using symbolic::Symbol;
-using symbolic::SymbolKind;
-
 constexpr std::uint8_t highest_order = 6;
 
 }  // namespace

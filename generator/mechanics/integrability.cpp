@@ -14,8 +14,6 @@ namespace eomgen::mechanics {
 namespace {
 
 using symbolic::Substitution;
-using symbolic::Symbol;
-using symbolic::SymbolKind;
 
 // Part of a row outside the span of others, in 50 digits.
 cln::cl_R independent_part() { return cln::cl_R(cln::expt(symbolic::Rational(1) / 10, 20)); }

@@ -12,9 +12,6 @@ namespace eomgen::mechanics {
 namespace {
 
 using cln::cl_R;
-using symbolic::Op;
-using symbolic::Symbol;
-using symbolic::SymbolKind;
 
 constexpr std::size_t most_bases = 14, most_factors = 3, points_used = 2;
 constexpr long finest_exponent = 2;  // exponents are multiples of 1/2

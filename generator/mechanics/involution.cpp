@@ -15,7 +15,6 @@ namespace eomgen::mechanics {
 namespace {
 
 using cln::cl_R;
-using symbolic::Symbol;
 using Vector = std::vector<cl_R>;
 using Matrix = std::vector<Vector>;  // by rows
 using MatrixSeries = std::vector<Matrix>;

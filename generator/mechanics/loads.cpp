@@ -8,8 +8,6 @@
 namespace eomgen::mechanics {
 namespace {
 
-using symbolic::SymbolKind;
-
 class ForceReader {
  public:
   ForceReader(Mechanics& mechanics, Lowering& lower) : m_(mechanics), lower_(lower), dag_(*mechanics.dag) {}

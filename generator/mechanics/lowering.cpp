@@ -11,8 +11,6 @@
 namespace eomgen::mechanics {
 namespace {
 
-using symbolic::Symbol;
-using symbolic::SymbolKind;
 namespace sym = symbolic;
 
 // Deeper than any handwritten expression; protects the stack from deep recursion.

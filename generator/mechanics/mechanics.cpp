@@ -10,9 +10,6 @@
 namespace eomgen::mechanics {
 namespace {
 
-using symbolic::Symbol;
-using symbolic::SymbolKind;
-
 void add_symbols(Mechanics& m) {
   Dag& dag = *m.dag;
   m.t = dag.symbol({SymbolKind::time, 0, 0});

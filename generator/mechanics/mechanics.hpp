@@ -15,7 +15,10 @@
 namespace eomgen::mechanics {
 
 using symbolic::Dag;
+using symbolic::Op;
 using symbolic::Ref;
+using symbolic::Symbol;
+using symbolic::SymbolKind;
 using symbolic::Vec3;
 
 struct PointMass {

@@ -10,9 +10,6 @@
 namespace eomgen::mechanics {
 namespace {
 
-using symbolic::Symbol;
-using symbolic::SymbolKind;
-
 /// Coordinates that occur in the position.
 std::vector<std::uint32_t> coordinates_of(const Mechanics& m, const PointMass& mass) {
   std::vector<std::uint32_t> result;

@@ -16,9 +16,6 @@
 namespace eomgen::mechanics {
 namespace {
 
-using symbolic::Symbol;
-using symbolic::SymbolKind;
-
 constexpr int sample_digits = 50, agreed_digits = 30;
 constexpr std::size_t wanted_points = 4, tried_points = 40;
 constexpr std::size_t form_terms = 300;

@@ -9,10 +9,6 @@
 
 namespace eomgen::print {
 
-using mechanics::Mechanics;
-using reading::Formula;
-using symbolic::SymbolKind;
-
 bool Article::approaches_differ() const {
   const auto fixes = [](const reading::DisplayConstraint& c) { return c.fixes.has_value(); };
   return std::any_of(two.constraints.begin(), two.constraints.end(), fixes);

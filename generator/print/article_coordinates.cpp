@@ -6,10 +6,6 @@
 
 namespace eomgen::print {
 
-using mechanics::Mechanics;
-using reading::Formula;
-using symbolic::SymbolKind;
-
 namespace {
 
 constexpr const char* joint_letters =

@@ -8,14 +8,7 @@
 
 namespace eomgen::print {
 
-using reading::arrange;
-using reading::DisplayForm;
-using reading::Formula;
-using reading::FormulaKind;
-using reading::Layout;
-using reading::mark;
 using reading::PartialDerivatives;
-using symbolic::SymbolKind;
 
 namespace {
 

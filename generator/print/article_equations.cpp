@@ -11,10 +11,6 @@
 
 namespace eomgen::print {
 
-using reading::Equation;
-using reading::Formula;
-using symbolic::SymbolKind;
-
 namespace {
 
 constexpr std::size_t half_width = 33, whole_width = 66;  // visible characters of a cell

@@ -8,8 +8,6 @@
 
 namespace eomgen::print {
 
-using reading::Formula;
-using reading::mark;
 using system::OutputKind;
 
 namespace {

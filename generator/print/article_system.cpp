@@ -7,10 +7,6 @@
 
 namespace eomgen::print {
 
-using mechanics::Mechanics;
-using reading::Formula;
-using symbolic::SymbolKind;
-
 namespace {
 
 constexpr std::size_t longest_position = 12;  // terms

@@ -7,12 +7,7 @@
 namespace eomgen::print {
 namespace {
 
-using mechanics::Mechanics;
 using reading::BalanceForm;
-using reading::Formula;
-using reading::Layout;
-using reading::mark;
-using reading::Sum;
 
 /// Longer solutions are left to the equations above, which determine them.
 constexpr std::size_t most_solved_terms = 6;

@@ -8,13 +8,9 @@
 namespace eomgen::print {
 namespace {
 
-using mechanics::Mechanics;
 using reading::Axes;
 using reading::BodyForce;
-using reading::Formula;
-using reading::mark;
 using reading::PotentialVector;
-using reading::Sum;
 
 class BodyForceStatements {
  public:

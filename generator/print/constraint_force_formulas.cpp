@@ -15,14 +15,6 @@
 namespace eomgen::print {
 namespace {
 
-using mechanics::Mechanics;
-using reading::DisplayForm;
-using reading::Formula;
-using reading::mark;
-using reading::Sum;
-using symbolic::Ref;
-using symbolic::SymbolKind;
-
 /// Multipliers in formulas: symbols, or functions of the state. In approach II the multipliers of imposed constraints
 /// are not unknowns; vectors that contain them are omitted, as are those that the motion does not determine.
 class Multipliers {

@@ -7,13 +7,6 @@
 
 namespace eomgen::print {
 
-using mechanics::Mechanics;
-using reading::Formula;
-using reading::Layout;
-using reading::mark;
-using reading::Sum;
-using symbolic::SymbolKind;
-
 namespace {
 
 Formula product_of(Formula factor, const Sum& sum) {

@@ -8,16 +8,7 @@
 
 namespace eomgen::print {
 
-using mechanics::Mechanics;
-using reading::arrange;
-using reading::DisplayForm;
-using reading::Equation;
-using reading::Formula;
-using reading::FormulaKind;
-using reading::Layout;
-using reading::mark;
 using reading::PowerOfSum;
-using reading::Sum;
 using reading::Symbol;
 using reading::SymbolKind;
 

@@ -10,6 +10,18 @@
 
 namespace eomgen::print {
 
+using mechanics::Mechanics;
+using reading::arrange;
+using reading::DisplayForm;
+using reading::Equation;
+using reading::Formula;
+using reading::FormulaKind;
+using reading::Layout;
+using reading::mark;
+using reading::Sum;
+using symbolic::Ref;
+using symbolic::SymbolKind;
+
 struct Statement {
   std::string key, name, coordinate, role;
   reading::Formula formula;

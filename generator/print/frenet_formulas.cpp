@@ -8,12 +8,8 @@
 namespace eomgen::print {
 namespace {
 
-using reading::arrange;
 using reading::Components;
-using reading::Formula;
 using reading::FrenetVector;
-using reading::mark;
-using reading::Sum;
 
 // The common denominator of all components, such as sqrt(1 + alpha^2).
 reading::Monomial common_denominator(const Components& v) {

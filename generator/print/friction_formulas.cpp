@@ -9,12 +9,6 @@ namespace eomgen::print {
 namespace {
 
 using mechanics::Contact;
-using mechanics::Mechanics;
-using reading::Formula;
-using reading::FormulaKind;
-using reading::mark;
-using symbolic::Ref;
-using symbolic::SymbolKind;
 
 Formula call(symbolic::Op op, Formula of) {
   Formula result = reading::make_formula(FormulaKind::call, {std::move(of)});

@@ -7,15 +7,8 @@
 namespace eomgen::print {
 namespace {
 
-using mechanics::Mechanics;
-using reading::arrange;
 using reading::Components;
-using reading::Formula;
-using reading::FormulaKind;
 using reading::Geometry;
-using reading::Layout;
-using reading::mark;
-using reading::Sum;
 using reading::SymbolKind;
 
 Formula coordinate_letter(std::uint32_t i) { return reading::symbol({SymbolKind::coordinate, i, 0}); }

@@ -8,14 +8,11 @@
 namespace eomgen::print {
 namespace {
 
-using mechanics::Mechanics;
 using reading::Axes;
-using reading::Formula;
 using reading::KinematicAngle;
 using reading::Kinematics;
 using reading::KinematicTensor;
 using reading::KinematicVector;
-using reading::mark;
 using reading::Quantity;
 
 class KinematicStatements {

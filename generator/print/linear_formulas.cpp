@@ -10,12 +10,7 @@
 namespace eomgen::print {
 namespace {
 
-using reading::arrange;
-using reading::Formula;
 using reading::LinearForm;
-using reading::mark;
-using reading::Sum;
-using symbolic::SymbolKind;
 
 class Entries {
  public:

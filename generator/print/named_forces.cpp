@@ -9,10 +9,6 @@
 
 namespace eomgen::print {
 
-using reading::Formula;
-using reading::FormulaKind;
-using reading::mark;
-using symbolic::Ref;
 using symbolic::Vec3;
 using LoadType = model::Effect::LoadType;
 

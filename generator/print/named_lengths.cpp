@@ -12,9 +12,6 @@
 namespace eomgen::print {
 namespace {
 
-using reading::Formula;
-using reading::FormulaKind;
-
 constexpr std::size_t fewest_terms = 4, fewest_places = 2;
 
 bool is_root_of_sum(const Formula& f) {

@@ -15,16 +15,7 @@
 namespace eomgen::print {
 namespace {
 
-using mechanics::Mechanics;
-using reading::DisplayForm;
-using reading::Equation;
-using reading::Formula;
-using reading::FormulaKind;
-using reading::mark;
-using reading::Sum;
-using symbolic::Ref;
 using symbolic::Symbol;
-using symbolic::SymbolKind;
 using symbolic::Vec3;
 
 constexpr std::size_t longest_numerator = 12;  // terms; longer sums are not combined in one fraction

@@ -10,9 +10,7 @@
 namespace eomgen::print {
 namespace {
 
-using reading::Formula;
 using reading::InertialParameter;
-using reading::mark;
 
 std::string description(const InertialParameter& p) {
   switch (p.kind) {

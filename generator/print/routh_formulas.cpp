@@ -7,9 +7,6 @@
 
 namespace eomgen::print {
 
-using reading::arrange;
-using reading::Formula;
-using reading::Layout;
 using reading::RouthForm;
 
 std::vector<PrintedFormula> render_routh(const mechanics::Mechanics& m, const RouthForm& form, LengthLetters* letters) {

@@ -8,12 +8,7 @@
 namespace eomgen::print {
 namespace {
 
-using mechanics::Mechanics;
-using reading::Formula;
-using reading::Layout;
 using reading::SolvedForm;
-using reading::Sum;
-using symbolic::SymbolKind;
 
 constexpr std::size_t most_terms = 60;  // of a formula that is read as one
 

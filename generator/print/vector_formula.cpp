@@ -5,9 +5,6 @@
 
 namespace eomgen::print {
 
-using reading::Formula;
-using reading::FormulaKind;
-using reading::mark;
 using Terms = std::optional<std::vector<Formula>>;
 
 namespace {

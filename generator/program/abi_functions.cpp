@@ -13,8 +13,6 @@
 namespace eomgen::program {
 
 using symbolic::Substitution;
-using symbolic::Symbol;
-using symbolic::SymbolKind;
 
 namespace {
 

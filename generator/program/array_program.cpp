@@ -8,10 +8,6 @@
 namespace eomgen::program {
 namespace {
 
-using symbolic::Op;
-using symbolic::Symbol;
-using symbolic::SymbolKind;
-
 /// Adds a copy of one entry to runs at equal distances.
 void add_copy(std::vector<ArrayRun>& runs, ArraySpace from_space, std::size_t from, ArraySpace to_space,
               std::size_t to) {

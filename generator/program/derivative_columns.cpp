@@ -11,9 +11,6 @@
 
 namespace eomgen::program {
 
-using symbolic::Symbol;
-using symbolic::SymbolKind;
-
 std::vector<Ref> AbiFunctions::differentiated(symbolic::Derivation& d, std::optional<Symbol> along) {
   std::vector<Ref> result;
   // The solution is differentiated in two cases: the friction law is nonlinear, and a solution by the formulation

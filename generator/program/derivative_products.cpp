@@ -6,9 +6,6 @@
 
 namespace eomgen::program {
 
-using symbolic::Symbol;
-using symbolic::SymbolKind;
-
 /// Entries of the argument v.
 std::vector<Ref> AbiFunctions::arguments(std::size_t first, std::size_t count) {
   std::vector<Ref> result;

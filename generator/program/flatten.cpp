@@ -11,8 +11,6 @@
 namespace eomgen::program {
 namespace {
 
-using symbolic::Op;
-
 bool is_odd(Op op) {
   return op == Op::sin || op == Op::tan || op == Op::asin || op == Op::atan || op == Op::sinh || op == Op::tanh ||
          op == Op::sign;

@@ -8,9 +8,6 @@
 namespace eomgen::program {
 namespace {
 
-using symbolic::Op;
-using symbolic::SymbolKind;
-
 class Conversion {
  public:
   Conversion(const symbolic::Dag& dag, const std::vector<std::uint32_t>& free,

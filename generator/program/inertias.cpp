@@ -5,8 +5,6 @@
 
 namespace eomgen::program {
 
-using symbolic::SymbolKind;
-
 InertiaFunctions::InertiaFunctions(Dag& dag, std::vector<system::Frame> frames, system::Inertias inertias,
                                    const std::vector<std::uint32_t>& free,
                                    const std::map<std::uint32_t, symbolic::Rational>& fix)

@@ -12,8 +12,6 @@
 namespace eomgen::program {
 namespace {
 
-using symbolic::Op;
-
 /// Functions are computed in binary64 and rounded, so that results do not depend on the machine.
 struct Binary32 {
   using Number = float;

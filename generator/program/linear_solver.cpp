@@ -17,8 +17,6 @@
 
 namespace eomgen::program {
 
-using symbolic::Symbol;
-
 namespace {
 
 /// Per constraint: whether its coordinates all belong to one block of M and that block is singular.

@@ -11,8 +11,6 @@
 
 namespace eomgen::program {
 
-using symbolic::Op;
-
 bool Term::is_node() const { return factors.size() == 1 && factors[0].exponent == 1 && symbolic::is_unit(coefficient); }
 
 bool operator==(const Term& a, const Term& b) {

@@ -16,6 +16,10 @@
 
 namespace eomgen::program {
 
+using symbolic::Op;
+using symbolic::Symbol;
+using symbolic::SymbolKind;
+
 struct Operations {
   std::size_t add = 0, mul = 0, div = 0, sqrt = 0, trig = 0, other = 0;
   std::size_t flops() const { return add + mul; }

@@ -12,8 +12,6 @@
 namespace eomgen::program {
 namespace {
 
-using symbolic::Op;
-
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double smallest_normal = std::numeric_limits<double>::min();  // smaller numbers lose digits
 constexpr double library_half_units = 4;                                // error of C library functions in half units

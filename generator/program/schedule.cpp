@@ -12,8 +12,6 @@
 namespace eomgen::program {
 namespace {
 
-using symbolic::Op;
-
 // x^1, x^2, x^3 are written as products; higher powers square x^(n/2).
 constexpr std::int32_t written_out = 3;
 

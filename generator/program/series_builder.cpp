@@ -8,8 +8,6 @@
 namespace eomgen::program {
 namespace {
 
-using symbolic::Op;
-
 // Operands of `next` whose index in w is known only at the end: {input, i} is sum i; the two constants are {side, 0}
 // and {side, 1}.
 constexpr Operand time_rate{Slot::side, 0}, one_over_k{Slot::side, 1}, order_k{Slot::time, 0};

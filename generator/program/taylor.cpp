@@ -15,7 +15,6 @@
 namespace eomgen::program {
 namespace {
 
-using symbolic::Op;
 using symbolic::Rational;
 using symbolic::Slope;
 

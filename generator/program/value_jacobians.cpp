@@ -15,9 +15,6 @@
 
 namespace eomgen::program {
 
-using symbolic::Symbol;
-using symbolic::SymbolKind;
-
 namespace {
 
 constexpr const char *of_outputs = "outputs_jac", *of_reactions = "reactions_jac", *of_momenta = "momenta_jac";

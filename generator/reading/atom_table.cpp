@@ -7,7 +7,6 @@ namespace eomgen::reading {
 namespace {
 
 using symbolic::Dag;
-using symbolic::Ref;
 
 void apply_range(const model::Model& model, const model::Coordinate& coordinate, Atom& atom) {
   if (coordinate.lower == model::no_node) return;

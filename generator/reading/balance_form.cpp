@@ -14,9 +14,6 @@
 namespace eomgen::reading {
 namespace {
 
-using mechanics::Mechanics;
-using symbolic::Ref;
-
 constexpr std::uint8_t omega_order = 6, cosine_order = 8;  // of auxiliary symbols; lower ones belong to other forms
 
 struct Unsuitable {

@@ -16,8 +16,6 @@ namespace eomgen::reading {
 namespace {
 
 using cln::cl_R;
-using mechanics::Mechanics;
-using symbolic::Ref;
 
 constexpr int rank_digits = 60;
 // Random numbers of three digits, some hundred operations: what is not 0 is far above, and what is 0 far below.

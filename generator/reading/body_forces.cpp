@@ -12,9 +12,6 @@
 namespace eomgen::reading {
 namespace {
 
-using mechanics::Mechanics;
-using symbolic::Ref;
-
 class BodyForceReader {
  public:
   explicit BodyForceReader(const Mechanics& m) : m_(m), bridge_(m) {}

@@ -12,7 +12,6 @@ namespace eomgen::reading {
 namespace {
 
 using mechanics::Mechanics;
-using symbolic::Ref;
 using symbolic::Vec3;
 
 /// Indices of the symbols of the carrier's motion, which are vectors along its axes, and of its height.

@@ -12,8 +12,6 @@
 namespace eomgen::reading {
 namespace {
 
-using mechanics::Mechanics;
-
 constexpr std::size_t most_particles = 4;  // of a basis that is read
 
 /// The coordinates of one particle, if they are all coordinates of the model.

@@ -16,8 +16,6 @@
 namespace eomgen::reading {
 namespace {
 
-using mechanics::Mechanics;
-
 constexpr std::size_t readable_curve_terms = 60;  // of |r' x r''|^2: more would fill pages
 
 Components cross(const Components& a, const Components& b) {

@@ -16,8 +16,6 @@
 namespace eomgen::reading {
 namespace {
 
-using mechanics::Mechanics;
-
 constexpr std::size_t largest_manifold = 6;
 
 // [ij,k] = 1/2 (da_kj/dq_i + da_ik/dq_j - da_ij/dq_k), Gamma^k_ij = a^kr [ij,r]

@@ -9,7 +9,6 @@ namespace eomgen::reading {
 
 using GiNaC::ex;
 using symbolic::Node;
-using symbolic::Ref;
 
 namespace {
 constexpr long most_steps = 2'000'000;

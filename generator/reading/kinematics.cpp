@@ -15,8 +15,6 @@
 namespace eomgen::reading {
 namespace {
 
-using mechanics::Mechanics;
-using symbolic::Ref;
 using symbolic::Vec3;
 
 /// The largest index of a frame whose axes the expression names; 0 if there is none.

@@ -5,8 +5,6 @@
 
 namespace eomgen::reading {
 
-using mechanics::Mechanics;
-
 namespace {
 
 // Terms of the kinetic energy: with more, no equation fits on a page.

@@ -13,8 +13,6 @@
 namespace eomgen::reading {
 namespace {
 
-using mechanics::Mechanics;
-
 std::string obstacle(const Mechanics& m, const DisplayForm& form) {
   if (form.is_unexpanded) return form.unexpanded_reason;
   if (!m.model->states.empty())

@@ -12,7 +12,6 @@ namespace {
 
 using GiNaC::ex;
 using symbolic::Node;
-using symbolic::Ref;
 
 // Lines break between terms, never inside a bracket. Untrusted models have potentials of any size.
 constexpr std::size_t longest_base = 6, most_powers = 64, most_nodes = 2000, longest_sum = 300,

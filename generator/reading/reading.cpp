@@ -18,8 +18,6 @@
 namespace eomgen::reading {
 namespace {
 
-using mechanics::Mechanics;
-
 // For equations that are too long to display: keeps the list of coordinates and forces only.
 void leave_unexpanded(const Mechanics& m, DisplayForm& form, const std::string& why) {
   form.is_unexpanded = true;

@@ -18,6 +18,7 @@
 namespace eomgen::reading {
 
 using Components = std::array<Sum, 3>;
+using mechanics::Mechanics;
 
 /// The budget, in products and sums of two terms, of a form, and of one formula displayed beside it. Results over
 /// budget are omitted, on every machine the same.

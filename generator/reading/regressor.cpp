@@ -13,8 +13,6 @@
 namespace eomgen::reading {
 namespace {
 
-using mechanics::Mechanics;
-using symbolic::Ref;
 using symbolic::Vec3;
 
 /// Of the written columns of Y, and of relations between them.

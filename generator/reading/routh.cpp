@@ -15,8 +15,6 @@
 namespace eomgen::reading {
 namespace {
 
-using mechanics::Mechanics;
-
 bool is_in(const std::vector<std::uint32_t>& list, std::uint32_t i) {
   return std::find(list.begin(), list.end(), i) != list.end();
 }

@@ -20,8 +20,6 @@
 namespace eomgen::reading {
 namespace {
 
-using mechanics::Mechanics;
-
 // Larger determinants are not expanded; the charts of the particles are examined instead.
 constexpr std::size_t largest_determinant = 4;
 

@@ -14,8 +14,6 @@
 namespace eomgen::reading {
 namespace {
 
-using mechanics::Mechanics;
-
 constexpr std::uint8_t start_order = 4;  // of auxiliary symbols; 3 is that of momenta
 
 bool can_stick(const mechanics::Contact& contact) { return contact.dimensions() > 0 && !contact.width; }

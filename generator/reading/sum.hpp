@@ -19,6 +19,7 @@ namespace eomgen::reading {
 
 using symbolic::Op;
 using symbolic::Rational;
+using symbolic::Ref;
 using symbolic::Symbol;
 using symbolic::SymbolKind;
 

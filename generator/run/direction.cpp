@@ -19,8 +19,6 @@ namespace eomgen::run {
 namespace {
 
 using mechanics::Mechanics;
-using symbolic::Ref;
-using symbolic::SymbolKind;
 
 // The first step is 1/64 to 1/32 of the value. A smaller one follows if the scene changes too much along it.
 constexpr int first_step = -5, smaller_steps = -4, most_steps = 3;

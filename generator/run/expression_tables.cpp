@@ -11,9 +11,6 @@ namespace {
 using eom::expressions::Op;
 using symbolic::Dag;
 using symbolic::Node;
-using symbolic::Ref;
-using symbolic::Symbol;
-using symbolic::SymbolKind;
 
 class Writer {
  public:

@@ -14,6 +14,9 @@
 namespace eomgen::run {
 
 using eom::expressions::Table;
+using symbolic::Ref;
+using symbolic::Symbol;
+using symbolic::SymbolKind;
 
 /// The meaning of a symbol: a number, a parameter, the index of a variable, another expression; or unknown, if it
 /// cannot be evaluated.

@@ -14,8 +14,6 @@ namespace eomgen::run {
 namespace {
 
 using eom::hybrid::JumpFunctions;
-using symbolic::Ref;
-using symbolic::SymbolKind;
 
 constexpr int high_power = 20;
 constexpr int steep_power = 4;  // in a denominator: the tails of 1/(1 + x^2) are still visible to the error control

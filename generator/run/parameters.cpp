@@ -18,9 +18,6 @@ namespace {
 
 using mechanics::Mechanics;
 using symbolic::Rational;
-using symbolic::Ref;
-using symbolic::Symbol;
-using symbolic::SymbolKind;
 
 constexpr int parameter_digits = 40;
 

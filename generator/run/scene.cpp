@@ -25,9 +25,6 @@ namespace eomgen::run {
 namespace {
 
 using mechanics::Mechanics;
-using symbolic::Ref;
-using symbolic::Symbol;
-using symbolic::SymbolKind;
 
 constexpr int digits = 40;
 

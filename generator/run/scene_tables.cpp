@@ -13,8 +13,6 @@
 namespace eomgen::run {
 namespace {
 
-using symbolic::Ref;
-
 /// All expressions, which identify the equations.
 std::vector<Ref> expressions_of(const system::EquationSystem& system) {
   std::vector<Ref> all;

@@ -5,8 +5,6 @@
 
 namespace eomgen::run {
 
-using symbolic::SymbolKind;
-
 Signal::Signal(const symbolic::Dag& dag, symbolic::Ref expression, const std::vector<double>& values) {
   signal_.expression = *make_table(dag, {expression}, [](const symbolic::Symbol& s) {
     if (s.kind == SymbolKind::time) return SymbolMeaning::of_variable(0);

@@ -12,9 +12,6 @@ namespace {
 
 using symbolic::Dag;
 using symbolic::Node;
-using symbolic::Ref;
-using symbolic::Symbol;
-using symbolic::SymbolKind;
 
 /// The dependence of each node: 0: on parameters and tables, 1: also on t, 2: on more.
 class Dependence {

@@ -14,9 +14,7 @@
 
 namespace eomgen::analysis {
 
-using symbolic::Ref;
 using symbolic::Symbol;
-using symbolic::SymbolKind;
 using symbolic::Vec3;
 
 namespace {

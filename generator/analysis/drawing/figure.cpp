@@ -22,7 +22,6 @@
 namespace eomgen::analysis {
 namespace {
 
-using symbolic::SymbolKind;
 using Weight = Sketch::Weight;
 
 constexpr std::size_t most_strokes = 4000;  // more strokes do not fit a figure

@@ -13,8 +13,6 @@ namespace {
 
 using mechanics::Mechanics;
 using mechanics::PointMass;
-using symbolic::Ref;
-using symbolic::SymbolKind;
 using symbolic::Vec3;
 using system::OutputKind;
 

@@ -12,8 +12,6 @@
 
 namespace eomgen::analysis {
 
-using symbolic::Ref;
-using symbolic::SymbolKind;
 using symbolic::Vec3;
 
 namespace {

@@ -15,6 +15,9 @@
 
 namespace eomgen::analysis {
 
+using symbolic::Ref;
+using symbolic::SymbolKind;
+
 /// Parts of a drawing. They refer to a vector by the index of its first component in the outputs, to a length by its
 /// index in the sizes, and to a place by its index in DrawnParts::places.
 struct DrawnPlace {

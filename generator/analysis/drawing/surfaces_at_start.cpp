@@ -11,7 +11,6 @@ namespace eomgen::analysis {
 
 using Eigen::Index;
 using symbolic::Symbol;
-using symbolic::SymbolKind;
 
 std::vector<SurfaceLine> surfaces_at_start(const mechanics::Mechanics& m, const DrawnParts& parts,
                                            const run::Scene& scene, const std::vector<double>& values, const View& view,

@@ -17,9 +17,6 @@
 namespace eomgen::analysis {
 namespace {
 
-using symbolic::Ref;
-using symbolic::SymbolKind;
-
 constexpr std::size_t most_contacts = 20;       // whose forces are solved for at every evaluation
 constexpr std::size_t largest_script = 400000;  // bytes; longer code takes too long to load
 

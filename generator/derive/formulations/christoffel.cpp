@@ -10,9 +10,6 @@
 namespace eomgen::derive {
 namespace {
 
-using symbolic::Symbol;
-using symbolic::SymbolKind;
-
 constexpr std::size_t term_budget = 300;
 constexpr std::size_t coordinate_budget = 6;  // the number of symbols grows with its cube
 

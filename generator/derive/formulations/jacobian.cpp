@@ -10,8 +10,6 @@
 namespace eomgen::derive {
 namespace {
 
-using symbolic::SymbolKind;
-
 /// Euler's equations along the axes of the rotation, (dH/dt + W x H) . dw/dqdot_i with the angular velocity W of these
 /// axes, eqs. (8.41), (9.39).
 void add_spin(Mechanics& m, const mechanics::BodyRotation& given, symbolic::Substitution* imposed,

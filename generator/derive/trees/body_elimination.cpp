@@ -7,8 +7,6 @@
 namespace eomgen::derive {
 namespace {
 
-using symbolic::cross;
-
 class Elimination {
  public:
   Elimination(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion)

@@ -4,8 +4,6 @@
 namespace eomgen::derive {
 namespace {
 
-using symbolic::cross;
-
 /// Euler angles: three steps about one axis each, with the rates of the three coordinates alone. The axis of the middle
 /// step differs from the others.
 struct EulerAngles {

@@ -6,8 +6,6 @@
 namespace eomgen::derive {
 namespace {
 
-using symbolic::cross;
-
 /// Momentum of a composite: linear, and angular about the origin.
 struct Momentum {
   Vec3 linear, angular;

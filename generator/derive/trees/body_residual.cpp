@@ -11,9 +11,6 @@
 namespace eomgen::derive {
 namespace {
 
-using symbolic::cross;
-using symbolic::SymbolKind;
-
 // Smaller trees have straight-line code that fits into the instruction cache.
 constexpr std::size_t smallest_loops = 9;  // coordinates
 

@@ -15,9 +15,6 @@ namespace {
 using mechanics::decompose_place;
 using mechanics::PlaceDecomposition;
 
-using symbolic::Symbol;
-using symbolic::SymbolKind;
-
 /// A point that is fixed in a link; link -1: the ground.
 struct Anchor {
   int link = -1;

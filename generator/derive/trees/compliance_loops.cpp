@@ -11,8 +11,6 @@
 namespace eomgen::derive {
 namespace {
 
-using symbolic::Symbol;
-using symbolic::SymbolKind;
 using system::ArrayEntry;
 using system::ArrayStep;
 

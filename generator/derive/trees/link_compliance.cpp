@@ -4,8 +4,6 @@
 namespace eomgen::derive {
 namespace {
 
-using symbolic::cross;
-
 Mat3 block(const Mat6& a, std::size_t row, std::size_t column) {
   Mat3 result;
   for (std::size_t i = 0; i < 3; ++i) {

@@ -4,9 +4,6 @@
 namespace eomgen::derive {
 namespace {
 
-using symbolic::cross;
-using symbolic::SymbolKind;
-
 class Derivation {
  public:
   Derivation(Mechanics& m, const BodyTree& tree, const std::vector<LinkMotion>& motion)

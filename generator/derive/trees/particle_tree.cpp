@@ -12,8 +12,6 @@
 namespace eomgen::derive {
 namespace {
 
-using symbolic::Symbol;
-
 /// J of each theta and the particles that it moves. False if it moves two of them differently, or none.
 bool find_joints(Dag& dag, ParticleTree& b, std::vector<std::set<std::size_t>>& moved) {
   for (const Symbol& theta : b.coordinates.theta) {

@@ -7,9 +7,6 @@
 
 namespace eomgen::derive {
 
-using symbolic::Symbol;
-using symbolic::SymbolKind;
-
 Vec3 extract_gravity(Mechanics& m, ImposedExpansion& expanded, Ref& non_gravity_potential) {
   Dag& dag = *m.dag;
   Vec3 sum = symbolic::zero_vector(dag);

@@ -25,9 +25,6 @@
 namespace eomgen::emit {
 namespace {
 
-using program::Function;
-using program::Slot;
-
 // Limit of the numbers of one block, which are on the stack: all entries and results of a state together.
 constexpr std::size_t max_numbers = 8192;
 
