@@ -9,6 +9,7 @@
 
 #include "bench/bench.hpp"
 #include "error.hpp"
+#include "lists.hpp"
 
 namespace eomgen::analysis {
 namespace {
@@ -115,9 +116,7 @@ void ReferenceBoundaries::refuse_order(const StateChange& change) const {
 }
 
 std::vector<double> ReferenceBoundaries::inputs_at(double t) const {
-  std::vector<double> u;
-  for (const run::Signal& signal : request_.scene.inputs) u.push_back(signal(t, t));
-  return u;
+  return mapped(request_.scene.inputs, [&](const run::Signal& signal) { return signal(t, t); });
 }
 
 }  // namespace eomgen::analysis

@@ -2,11 +2,11 @@
 #include <vector>
 
 #include "coordinates/kinds.hpp"
+#include "lists.hpp"
 
 namespace eomgen::coordinates {
-namespace {
 
-const std::vector<CoordinateSystem>& all() {
+std::span<const CoordinateSystem> registry() {
 #define COORDINATES(name) name(),
   static const std::vector<CoordinateSystem> systems{
 #include "coordinates/registry.inc"
@@ -15,15 +15,6 @@ const std::vector<CoordinateSystem>& all() {
   return systems;
 }
 
-}  // namespace
-
-std::span<const CoordinateSystem> registry() { return all(); }
-
-const CoordinateSystem* find(std::string_view name) {
-  for (const CoordinateSystem& system : registry()) {
-    if (system.name == name) return &system;
-  }
-  return nullptr;
-}
+const CoordinateSystem* find(std::string_view name) { return find_named(registry(), name); }
 
 }  // namespace eomgen::coordinates

@@ -2,11 +2,11 @@
 #include <vector>
 
 #include "couplings/kinds.hpp"
+#include "lists.hpp"
 
 namespace eomgen::couplings {
-namespace {
 
-const std::vector<Coupling>& all() {
+std::span<const Coupling> registry() {
 #define COUPLING(name) name(),
   static const std::vector<Coupling> couplings{
 #include "couplings/registry.inc"
@@ -15,15 +15,6 @@ const std::vector<Coupling>& all() {
   return couplings;
 }
 
-}  // namespace
-
-std::span<const Coupling> registry() { return all(); }
-
-const Coupling* find(std::string_view name) {
-  for (const Coupling& coupling : registry()) {
-    if (coupling.name == name) return &coupling;
-  }
-  return nullptr;
-}
+const Coupling* find(std::string_view name) { return find_named(registry(), name); }
 
 }  // namespace eomgen::couplings

@@ -9,15 +9,6 @@
 namespace eomgen::derive {
 namespace {
 
-const std::vector<FormulationEntry>& all() {
-#define FORMULATION(name) formulation::name(),
-  static const std::vector<FormulationEntry> entries{
-#include "derive/formulations/registry.inc"
-  };
-#undef FORMULATION
-  return entries;
-}
-
 /// Whether most entries of the mass matrix are nonzero, as for a chain; branches near the root leave zeros.
 bool is_nearly_full(const mechanics::Mechanics& m, const system::EquationSystem& s) {
   constexpr std::size_t share = 4;
@@ -49,7 +40,14 @@ bool has_cheaper_formulation(const FormulationEntry& formulation, mechanics::Mec
 
 }  // namespace
 
-std::span<const FormulationEntry> formulations() { return all(); }
+std::span<const FormulationEntry> formulations() {
+#define FORMULATION(name) formulation::name(),
+  static const std::vector<FormulationEntry> entries{
+#include "derive/formulations/registry.inc"
+  };
+#undef FORMULATION
+  return entries;
+}
 
 DerivationResult derive_if_worthwhile(const FormulationEntry& formulation, mechanics::Mechanics& m,
                                       system::Approach approach) {

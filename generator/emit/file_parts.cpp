@@ -3,23 +3,18 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "abi/functions.hpp"
 #include "emit/array_loops.hpp"
 #include "emit/metadata.hpp"
 #include "emit/signature.hpp"
+#include "lists.hpp"
 
 namespace eomgen::emit {
 namespace {
 
 using program::Program;
 
-const Function* find(const Program& program, const std::string& name) {
-  const auto found = std::find_if(program.functions.begin(), program.functions.end(),
-                                  [&](const Function& f) { return f.name == name; });
-  return found == program.functions.end() ? nullptr : &*found;
-}
+const Function* find(const Program& program, const std::string& name) { return find_named(program.functions, name); }
 
 std::string chart_name(unsigned in_charts) { return in_charts == 0 ? "own" : fmt::format("chart{}", in_charts); }
 

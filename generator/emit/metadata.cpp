@@ -12,6 +12,7 @@
 #include "emit/start/start.hpp"
 #include "emit/text.hpp"
 #include "error.hpp"
+#include "lists.hpp"
 #include "program/array_program.hpp"
 #include "program/internal_functions.hpp"
 #include "program/kinks.hpp"
@@ -30,8 +31,7 @@ std::string rate_unit(const std::string& unit) {
 }
 
 std::vector<Quantity> states(const program::Program& program, const EmissionContext& context) {
-  std::vector<Quantity> result;
-  for (const std::uint32_t i : program.free) result.push_back(context.coordinates.at(i));
+  std::vector<Quantity> result = mapped(program.free, [&](std::uint32_t i) { return context.coordinates.at(i); });
   for (const std::uint32_t i : program.free) {
     Quantity rate = context.coordinates.at(i);
     rate.name += "_dot";
@@ -115,9 +115,7 @@ std::vector<std::string> banner_lines(const program::Program& program, const Emi
   add_table(lines, "parameters p", context.parameters, true);
   add_table(lines, "inputs u", context.inputs, true);
   const auto names = [](const std::vector<std::string>& list) {
-    std::vector<Quantity> rows;
-    for (const std::string& name : list) rows.push_back({name, "", "", 0});
-    return rows;
+    return mapped(list, [&](const std::string& name) -> Quantity { return {name, "", "", 0}; });
   };
   add_table(lines, "reactions lambda", names(program.reactions), false);
   add_table(lines, "outputs y", names(program.outputs), false);
@@ -371,11 +369,7 @@ bool EmissionContext::has_resets() const {
                                          [](const EventDescription& event) { return !event.reset.set.empty(); });
 }
 
-std::vector<double> values_of(const std::vector<Quantity>& quantities) {
-  std::vector<double> values;
-  for (const Quantity& quantity : quantities) values.push_back(quantity.value);
-  return values;
-}
+std::vector<double> values_of(const std::vector<Quantity>& quantities) { return mapped(quantities, &Quantity::value); }
 
 void require_consistent(const program::Program& program, const EmissionContext& context) {
   const auto require = [](bool ok, const char* what) {

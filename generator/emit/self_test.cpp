@@ -13,6 +13,7 @@
 #include "emit/single_precision.hpp"
 #include "emit/start/start.hpp"
 #include "emit/text.hpp"
+#include "lists.hpp"
 #include "numeric/numbers.hpp"
 #include "program/abi_values.hpp"
 #include "program/internal_functions.hpp"
@@ -31,11 +32,7 @@ constexpr int taylor_order = 4;
 // Limit of values per function. The second vector is always tested, the others while they fit.
 constexpr std::size_t max_values = 3000;
 
-std::vector<cln::cl_R> exact(const std::vector<double>& values) {
-  std::vector<cln::cl_R> result;
-  for (const double value : values) result.push_back(numeric::exact(value));
-  return result;
-}
+std::vector<cln::cl_R> exact(const std::vector<double>& values) { return mapped<cln::cl_R>(values, numeric::exact); }
 
 program::AbiArguments arguments_of(const TestVector& at, const EmissionContext& context) {
   program::AbiArguments arguments;

@@ -13,6 +13,7 @@
 #include "emit/self_test.hpp"
 #include "emit/text.hpp"
 #include "error.hpp"
+#include "lists.hpp"
 #include "numeric/numbers.hpp"
 #include "program/interpret.hpp"
 
@@ -41,9 +42,7 @@ bool round(TestVector& at) {
 std::vector<float> single(const std::vector<double>& values) { return {values.begin(), values.end()}; }
 
 std::vector<cln::cl_R> exact_values(const std::vector<double>& values) {
-  std::vector<cln::cl_R> result;
-  for (const double value : values) result.push_back(numeric::exact(value));
-  return result;
+  return mapped<cln::cl_R>(values, numeric::exact);
 }
 
 /// The error relative to the largest entry of each result. Returns nothing if there is no value, no value in single

@@ -18,6 +18,7 @@
 #include "emit/python/python.hpp"
 #include "emit/rust/rust.hpp"
 #include "error.hpp"
+#include "lists.hpp"
 
 namespace eomgen::emit {
 namespace {
@@ -42,17 +43,9 @@ constexpr TargetEntry registry[] = {
 
 std::span<const TargetEntry> targets() { return registry; }
 
-std::vector<std::string> target_names() {
-  std::vector<std::string> names;
-  for (const TargetEntry& entry : registry) names.emplace_back(entry.name);
-  return names;
-}
+std::vector<std::string> target_names() { return mapped<std::string>(registry, &TargetEntry::name); }
 
-const TargetEntry* find_target(const std::string& name) {
-  const auto* found = std::find_if(std::begin(registry), std::end(registry),
-                                   [&](const TargetEntry& entry) { return entry.name == name; });
-  return found == std::end(registry) ? nullptr : found;
-}
+const TargetEntry* find_target(const std::string& name) { return find_named(registry, name); }
 
 std::vector<EmittedFile> emit(const program::Program& program, const EmissionContext& context,
                               const std::string& target) {

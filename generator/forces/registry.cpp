@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <vector>
+
 #include "forces/kinds.hpp"
+#include "lists.hpp"
 
 namespace eomgen::forces {
-namespace {
 
-const std::vector<Kind>& all() {
+std::span<const Kind> registry() {
 #define FORCE(name) name(),
   static const std::vector<Kind> kinds{
 #include "forces/registry.inc"
@@ -13,15 +15,6 @@ const std::vector<Kind>& all() {
   return kinds;
 }
 
-}  // namespace
-
-std::span<const Kind> registry() { return all(); }
-
-const Kind* find(std::string_view name) {
-  for (const Kind& kind : registry()) {
-    if (kind.name == name) return &kind;
-  }
-  return nullptr;
-}
+const Kind* find(std::string_view name) { return find_named(registry(), name); }
 
 }  // namespace eomgen::forces

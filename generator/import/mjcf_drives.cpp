@@ -3,18 +3,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "import/model_text.hpp"
+#include "lists.hpp"
 #include "model/names.hpp"
 
 namespace eomgen::import {
 namespace {
 
 Joint& joint_named(const Attribute& name, Robot& robot) {
-  const auto found = std::find_if(robot.joints.begin(), robot.joints.end(),
-                                  [&](const Joint& joint) { return joint.name == name.value; });
-  if (found != robot.joints.end()) return *found;
+  auto* const found = find_named(robot.joints, name.value);
+  if (found != nullptr) return *found;
   std::vector<std::string> known;
   for (const Joint& joint : robot.joints) known.push_back(joint.name);
   const std::string hint = model::did_you_mean(name.value, known);

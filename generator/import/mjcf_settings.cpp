@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "lists.hpp"
 #include "model/names.hpp"
 
 namespace eomgen::import {
@@ -32,9 +33,7 @@ Matrix from_quaternion(long double w, long double x, long double y, long double 
 }
 
 std::vector<long double> values_of(const Attribute& attribute, std::size_t count) {
-  std::vector<long double> result;
-  for (const Number& number : numbers_of(attribute, count, count)) result.push_back(number.value);
-  return result;
+  return mapped(numbers_of(attribute, count, count), &Number::value);
 }
 
 [[noreturn]] void fail_direction(const Attribute& attribute) {

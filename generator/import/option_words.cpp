@@ -6,6 +6,7 @@
 #include <array>
 
 #include "error.hpp"
+#include "lists.hpp"
 #include "model/names.hpp"
 
 namespace eomgen::import {
@@ -28,9 +29,7 @@ constexpr std::array actuations{Word{"transmissions", Actuation::transmissions},
 
 template <typename Words>
 std::vector<std::string> texts_of(const Words& words) {
-  std::vector<std::string> result;
-  for (const auto& word : words) result.emplace_back(word.text);
-  return result;
+  return mapped<std::string>(words, [&](const auto& word) { return word.text; });
 }
 
 template <typename Words>

@@ -11,7 +11,7 @@
 #include "jit/assign.hpp"
 #include "jit/encode.hpp"
 #include "jit/kernels.hpp"
-#include "program/internal_functions.hpp"
+#include "lists.hpp"
 #include "program/taylor.hpp"
 
 namespace eomgen::jit {
@@ -32,11 +32,7 @@ struct MachineCode::Parts {
 
 namespace {
 
-const Function* find(const Program& program, const std::string& name) {
-  const auto found = std::find_if(program.functions.begin(), program.functions.end(),
-                                  [&](const Function& function) { return function.name == name; });
-  return found == program.functions.end() ? nullptr : &*found;
-}
+const Function* find(const Program& program, const std::string& name) { return find_named(program.functions, name); }
 
 }  // namespace
 

@@ -2,11 +2,11 @@
 #include <vector>
 
 #include "joints/kinds.hpp"
+#include "lists.hpp"
 
 namespace eomgen::joints {
-namespace {
 
-const std::vector<Joint>& all() {
+std::span<const Joint> registry() {
 #define JOINT(name) name(),
   static const std::vector<Joint> joints{
 #include "joints/registry.inc"
@@ -15,15 +15,6 @@ const std::vector<Joint>& all() {
   return joints;
 }
 
-}  // namespace
-
-std::span<const Joint> registry() { return all(); }
-
-const Joint* find(std::string_view name) {
-  for (const Joint& joint : registry()) {
-    if (joint.name == name) return &joint;
-  }
-  return nullptr;
-}
+const Joint* find(std::string_view name) { return find_named(registry(), name); }
 
 }  // namespace eomgen::joints

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "linear/linearise.hpp"
+#include "lists.hpp"
 
 namespace eomgen::linear {
 
@@ -26,11 +27,7 @@ class HeldQuantities {
   }
 
  private:
-  std::vector<Ref> expressions() const {
-    std::vector<Ref> result;
-    for (const Quantity& q : quantities_) result.push_back(q.expression);
-    return result;
-  }
+  std::vector<Ref> expressions() const { return mapped(quantities_, &Quantity::expression); }
   const Flow& flow_;
   std::vector<Quantity> quantities_;
   Tape tape_;

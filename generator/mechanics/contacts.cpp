@@ -4,6 +4,7 @@
 #include <functional>
 #include <set>
 
+#include "lists.hpp"
 #include "mechanics/imposition.hpp"
 #include "mechanics/stages.hpp"
 #include "mechanics/vanishes.hpp"
@@ -120,11 +121,7 @@ class ContactReader {
     }
     return {found.begin(), found.end()};
   }
-  std::vector<std::uint32_t> particle_places() const {
-    std::vector<std::uint32_t> result;
-    for (const model::Particle& particle : m_.model->particles) result.push_back(particle.place);
-    return result;
-  }
+  std::vector<std::uint32_t> particle_places() const { return mapped(m_.model->particles, &model::Particle::place); }
 
   // A particle or point that the constraint names, or else a particle; with the fewest coordinates among those that
   // have all coordinates of the constraint.
@@ -170,8 +167,7 @@ class ContactReader {
     }
     if (own_.empty()) fail("the particle of '" + contact_.name + "' does not move", "remove the friction");
     if (own_.size() == all.size()) return;
-    std::vector<Vec3> a;
-    for (const std::uint32_t i : own_) a.push_back(gradient(i));
+    std::vector<Vec3> a = mapped(own_, [&](std::uint32_t i) { return gradient(i); });
     const std::vector<Vec3> normals = gradients(a);
     for (std::size_t k = 0; k < normals.size(); ++k) {
       for (const std::uint32_t i : all) {
@@ -200,8 +196,7 @@ class ContactReader {
       fail("'" + contact_.name + "' leaves its particle no direction to slide in",
            "remove the friction, or free a coordinate");
     }
-    std::vector<Vec3> a;
-    for (const std::uint32_t i : own_) a.push_back(gradient(i));
+    std::vector<Vec3> a = mapped(own_, [&](std::uint32_t i) { return gradient(i); });
     const std::vector<Vec3> normals = gradients(a);
     for (const Vec3& x : normals) {
       for (const Vec3& y : normals) contact_.gram.push_back(tidy(lower_.dot(x, y)));
@@ -247,8 +242,7 @@ class ContactReader {
     const symbolic::Factorisation factors(dag_, metric, n, symbolic::Ties::ascending);
     std::vector<Vec3> result;
     for (std::size_t k = 0; k < contact_.constraints.size(); ++k) {
-      std::vector<Ref> lower_components;
-      for (const std::uint32_t i : own_) lower_components.push_back(slope(k)[i]);
+      std::vector<Ref> lower_components = mapped(own_, [&](std::uint32_t i) { return slope(k)[i]; });
       const std::vector<Ref> upper = factors.backward(factors.forward(lower_components));
       Vec3 sum = symbolic::zero_vector(dag_);
       for (std::size_t i = 0; i < n; ++i) {

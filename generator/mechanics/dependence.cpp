@@ -9,6 +9,7 @@
 #include <numeric>
 #include <utility>
 
+#include "lists.hpp"
 #include "mechanics/closure.hpp"
 #include "mechanics/small.hpp"
 #include "mechanics/stages.hpp"
@@ -58,9 +59,7 @@ ConstraintRows constraint_rows(const Mechanics& m) {
 
 std::vector<Row> rows_of(const ClosureSolver& closure, const ConstraintRows& of, const Configuration& at) {
   const std::vector<Row> all = closure.jacobian_rows(at);
-  std::vector<Row> rows;
-  for (const std::uint32_t k : of.constraints) rows.push_back(all[k]);
-  return rows;
+  return mapped(of.constraints, [&](std::uint32_t k) { return all[k]; });
 }
 
 /// Whether the other rows lie in the span of the selected rows, which are independent, at this configuration too.
@@ -226,8 +225,7 @@ double volume(const std::vector<Row>& rows, const std::vector<double>& usual, co
   double result = 1;
   std::vector<std::vector<double>> basis;
   for (const std::size_t k : of) {
-    std::vector<double> left;
-    for (const cl_R& x : rows[k]) left.push_back(cln::double_approx(x) / usual[k]);
+    std::vector<double> left = mapped(rows[k], [&](const cl_R& x) { return cln::double_approx(x) / usual[k]; });
     for (const std::vector<double>& e : basis) {
       const double part = std::inner_product(e.begin(), e.end(), left.begin(), 0.0);
       for (std::size_t i = 0; i < left.size(); ++i) left[i] -= part * e[i];

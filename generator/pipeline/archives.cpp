@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/archives.hpp"
 
+#include "lists.hpp"
 #include "pipeline/fmu_package.hpp"
 
 namespace eomgen::pipeline {
@@ -18,12 +19,7 @@ constexpr Archive registry[] = {
 
 std::span<const Archive> archives() { return registry; }
 
-const Archive* find_archive(const std::string& name) {
-  for (const Archive& archive : registry) {
-    if (archive.name == name) return &archive;
-  }
-  return nullptr;
-}
+const Archive* find_archive(const std::string& name) { return find_named(registry, name); }
 
 std::vector<std::string> target_names() {
   std::vector<std::string> names = emit::target_names();

@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 
+#include "lists.hpp"
 #include "print/shortener.hpp"
 #include "symbolic/functions.hpp"
 
@@ -145,14 +146,10 @@ class FormulaPrinter {
     return {joined(terms), Piece::sum};
   }
   std::vector<Piece> pieces(const std::vector<Formula>& list) const {
-    std::vector<Piece> result;
-    for (const Formula& f : list) result.push_back((*this)(f));
-    return result;
+    return mapped(list, [&](const Formula& f) { return (*this)(f); });
   }
   std::vector<std::string> texts(const std::vector<Formula>& list) const {
-    std::vector<std::string> result;
-    for (const Formula& f : list) result.push_back((*this)(f).text);
-    return result;
+    return mapped(list, [&](const Formula& f) { return (*this)(f).text; });
   }
   std::string listed(const std::vector<Formula>& list, const std::string& separator) const {
     std::string result;

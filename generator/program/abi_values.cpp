@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "abi/functions.hpp"
+#include "lists.hpp"
 #include "numeric/numbers.hpp"
 #include "program/kinks.hpp"
 #include "program/rounding.hpp"
@@ -19,11 +20,7 @@ namespace {
 
 using cln::cl_R;
 
-const Function* find(const Program& program, const std::string& name) {
-  const auto found = std::find_if(program.functions.begin(), program.functions.end(),
-                                  [&](const Function& f) { return f.name == name; });
-  return found == program.functions.end() ? nullptr : &*found;
-}
+const Function* find(const Program& program, const std::string& name) { return find_named(program.functions, name); }
 
 template <class Real>
 Arguments<Real> prepared_for(const Program& program, const std::string& function, Arguments<Real> at,
@@ -143,9 +140,7 @@ Arguments<double> in_binary64(const Arguments<cl_R>& at) {
 }
 
 std::vector<double> in_binary64(const std::vector<cl_R>& values) {
-  std::vector<double> result;
-  for (const cl_R& value : values) result.push_back(to_binary64(value));
-  return result;
+  return mapped(values, [&](const cl_R& value) { return to_binary64(value); });
 }
 
 }  // namespace
@@ -164,8 +159,7 @@ const Program* program_in_charts(const Program& program, const std::vector<int>&
 }
 
 std::vector<std::string> abi_function_names(const Program& program) {
-  std::vector<std::string> names;
-  for (const Function& function : program.functions) names.push_back(function.name);
+  std::vector<std::string> names = mapped(program.functions, &Function::name);
   if (program.taylor) names.emplace_back("taylor");
   return names;
 }

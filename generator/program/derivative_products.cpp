@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Functions of AbiFunctions with the argument v: derivatives times vectors, and inverse dynamics; with the Coriolis
 // matrix, which belongs to it.
+#include "lists.hpp"
 #include "program/abi_functions.hpp"
 #include "symbolic/adjoint.hpp"
 
@@ -137,9 +138,7 @@ std::vector<Ref> AbiFunctions::frictionless(const std::vector<Ref>& expressions)
   for (std::size_t b = 0; b < friction_.phi.size(); ++b)
     none[{SymbolKind::friction, static_cast<std::uint32_t>(b), 0}] = system_.dag->zero();
   symbolic::Substitution without(*system_.dag, std::move(none));
-  std::vector<Ref> result;
-  for (const Ref r : expressions) result.push_back(without(r));
-  return result;
+  return mapped(expressions, [&](Ref r) { return without(r); });
 }
 
 FunctionExpressions AbiFunctions::inverse() {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "lists.hpp"
 #include "program/elimination.hpp"
 #include "program/normal_forces.hpp"
 
@@ -65,8 +66,7 @@ class FrictionLawSolver {
     store(solve(f, c), [](Affine& a, Ref r) { a.value = r; });
     for (std::size_t b = 0; b < count_; ++b) {
       Derivation by = symbolic::partial_derivative(dag_, phi_symbol(b));
-      std::vector<Ref> column;
-      for (const Ref r : s_.f) column.push_back(by(r));
+      std::vector<Ref> column = mapped(s_.f, [&](Ref r) { return by(r); });
       store(solve(column, still), [](Affine& a, Ref r) { a.slope.push_back(r); });
     }
     for (std::size_t i = 0; i < s_.free.size(); ++i) unknown_.push_back({SymbolKind::coordinate, s_.free[i], 2});
@@ -153,8 +153,7 @@ class FrictionLawSolver {
 
   /// Rows that vanish while sticking: the slip rate; phi itself along directions that another contact constrains.
   std::vector<Affine> sticking_rows(std::uint32_t j) {
-    std::vector<Affine> rates;
-    for (const Ref rate : s_.contacts[j].slip_rate) rates.push_back(affine(rate));
+    std::vector<Affine> rates = mapped(s_.contacts[j].slip_rate, [&](Ref rate) { return affine(rate); });
     return sticking_rows(s_.contacts[j], rates, 0, {});
   }
   /// The rows as a case distinction over the contacts that constrain a direction. Contacts before `next` are decided:

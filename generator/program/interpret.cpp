@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "lists.hpp"
 #include "symbolic/arithmetic.hpp"
 #include "work.hpp"
 
@@ -81,8 +82,7 @@ Values<Real> run(const Function& function, const Arguments<Real>& arguments, con
       value.emplace_back(0);
       continue;
     }
-    std::vector<Real> operands;
-    for (const Operand& operand : instruction.operands) operands.push_back(read(operand));
+    std::vector<Real> operands = mapped(instruction.operands, [&](const Operand& operand) { return read(operand); });
     if (instruction.op == Op::add || instruction.op == Op::mul) {
       Real result = operands[0];
       for (std::size_t i = 1; i < operands.size(); ++i) {
@@ -103,8 +103,7 @@ Values<Real> run(const Function& function, const Arguments<Real>& arguments, con
   }
   Values<Real> values;
   for (const Result& result : function.results) {
-    std::vector<Real> list;
-    for (const Operand& entry : result.entries) list.push_back(needed(entry));
+    std::vector<Real> list = mapped(result.entries, [&](const Operand& entry) { return needed(entry); });
     values.results.push_back(std::move(list));
   }
   for (const PivotTest& test : function.pivots) values.pivots.emplace_back(needed(test.pivot), needed(test.scale));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "lists.hpp"
 #include "program/polynomials.hpp"
 #include "symbolic/small_numbers.hpp"
 
@@ -102,9 +103,7 @@ bool PolynomialGraph::has_square(const Monomial& monomial) const {
 bool PolynomialGraph::apply_pythagoras(std::vector<Term>& terms) {
   if (std::none_of(terms.begin(), terms.end(), [this](const Term& term) { return has_square(term.factors); }))
     return false;
-  std::vector<Monomial> open;
-  open.reserve(terms.size());
-  for (const Term& term : terms) open.push_back(expanded(term.factors));
+  std::vector<Monomial> open = mapped(terms, [&](const Term& term) { return expanded(term.factors); });
   const auto find = [&](const Monomial& wanted, const Rational& coefficient) {
     for (std::size_t j = 0; j < terms.size(); ++j) {
       if (same(terms[j].coefficient, coefficient) && open[j] == wanted) return j;

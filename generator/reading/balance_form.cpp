@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "lists.hpp"
 #include "reading/lagrangian.hpp"
 #include "reading/linear_system.hpp"
 #include "reading/no_value.hpp"
@@ -221,8 +222,7 @@ class Balance {
     };
     Components F, M;
     for (std::size_t j = 0; j < 3; ++j) F[j] = force(form_.position[j]);
-    std::vector<Sum> covector;
-    for (const std::uint32_t i : angles_) covector.push_back(force(i));
+    std::vector<Sum> covector = mapped(angles_, [&](std::uint32_t i) { return force(i); });
     M = along_fixed(covector);
     for (const Components* vector : {&F, &M}) {
       for (const Sum& component : *vector) {
@@ -238,8 +238,7 @@ class Balance {
       linear.push_back(std::move(left));
     }
     std::vector<Sum> angular = moment_equations(M);
-    std::vector<Symbol> unknowns;
-    for (const std::uint32_t j : form_.position) unknowns.push_back(coordinate_symbol(j, 2));
+    std::vector<Symbol> unknowns = mapped(form_.position, [&](std::uint32_t j) { return coordinate_symbol(j, 2); });
     for (const BalanceRow& row : rows_) unknowns.push_back({SymbolKind::multiplier, row.constraint, 0});
     std::vector<Sum> known = linear;
     known.insert(known.end(), rates.begin(), rates.end());

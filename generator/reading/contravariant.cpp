@@ -6,7 +6,6 @@
 
 #include "reading/lagrangian.hpp"
 #include "reading/no_value.hpp"
-#include "reading/rational_function.hpp"
 #include "reading/trig.hpp"
 
 namespace eomgen::reading {

@@ -7,7 +7,6 @@
 
 #include "reading/lagrangian.hpp"
 #include "reading/no_value.hpp"
-#include "reading/rational_function.hpp"
 #include "reading/scalar_product.hpp"
 #include "reading/small_matrix.hpp"
 #include "reading/trig.hpp"

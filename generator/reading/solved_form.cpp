@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "lists.hpp"
 #include "mechanics/dependent_coordinates.hpp"
 #include "reading/lagrangian.hpp"
 #include "reading/linear_system.hpp"
@@ -50,8 +51,7 @@ class Solver {
     add_equations();
     add_constraints();
     if (form_.mode == FrictionMode::holding) add_contacts();
-    std::vector<Symbol> unknowns;
-    for (const std::uint32_t i : reduced_.free) unknowns.push_back(coordinate_symbol(i, 2));
+    std::vector<Symbol> unknowns = mapped(reduced_.free, [&](std::uint32_t i) { return coordinate_symbol(i, 2); });
     for (std::uint32_t k = 0; k < m_.constraints.size(); ++k) {
       if (m_.is_independent(k)) unknowns.push_back({SymbolKind::multiplier, k, 0});
     }
@@ -178,8 +178,7 @@ class Solver {
       if (!can_stick(contact)) continue;
       for (const symbolic::Ref slip : contact.slip) slips.push_back(imposed(bridge_.sum(slip)));
     }
-    std::vector<Symbol> rates;
-    for (const std::uint32_t i : reduced_.free) rates.push_back(coordinate_symbol(i, 1));
+    std::vector<Symbol> rates = mapped(reduced_.free, [&](std::uint32_t i) { return coordinate_symbol(i, 1); });
     if (rates.size() != slips.size()) return;
     const std::vector<std::optional<Sum>> solution = solve_linear(slips, rates);
     for (std::size_t j = 0; j < rates.size(); ++j) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "error.hpp"
+#include "lists.hpp"
 #include "numeric/elimination.hpp"
 #include "program/interpret.hpp"
 
@@ -58,9 +59,7 @@ class Start {
     at_.x.assign(x.begin(), x.end());
     const auto values = program::interpret(constraints_, at_, digits_).results;
     const auto rounded = [this](const std::vector<cln::cl_R>& list) {
-      std::vector<Number> result;
-      for (const cln::cl_R& value : list) result.push_back(cln::cl_float(value, format_));
-      return result;
+      return mapped(list, [&](const cln::cl_R& value) { return cln::cl_float(value, format_); });
     };
     return {rounded(values[0]), rounded(values[1]), rounded(values[2])};
   }

@@ -2,12 +2,12 @@
 // To add a representation: a line here, and for a new family one file like rodrigues.cpp.
 #include <vector>
 
+#include "lists.hpp"
 #include "rotations/families.hpp"
 
 namespace eomgen::rotations {
-namespace {
 
-const std::vector<Rotation>& all() {
+std::span<const Rotation> registry() {
   static const std::vector<Rotation> rotations{
       euler(1, 2, 1), euler(1, 3, 1),     euler(2, 1, 2), euler(2, 3, 2), euler(3, 1, 3), euler(3, 2, 3),
       euler(1, 2, 3), euler(1, 3, 2),     euler(2, 1, 3), euler(2, 3, 1), euler(3, 1, 2), euler(3, 2, 1),
@@ -16,15 +16,6 @@ const std::vector<Rotation>& all() {
   return rotations;
 }
 
-}  // namespace
-
-std::span<const Rotation> registry() { return all(); }
-
-const Rotation* find(std::string_view name) {
-  for (const Rotation& rotation : registry()) {
-    if (rotation.name == name) return &rotation;
-  }
-  return nullptr;
-}
+const Rotation* find(std::string_view name) { return find_named(registry(), name); }
 
 }  // namespace eomgen::rotations

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "lists.hpp"
+
 namespace eomgen::run {
 namespace {
 
@@ -21,14 +23,10 @@ class PlaceOf {
   explicit PlaceOf(const std::vector<std::string>& names) : names_(names) {}
   std::size_t operator()(const std::string& name) const { return index_of(names_, name); }
   std::vector<std::size_t> operator()(const std::vector<std::string>& names) const {
-    std::vector<std::size_t> places;
-    for (const std::string& name : names) places.push_back((*this)(name));
-    return places;
+    return mapped(names, [&](const std::string& name) { return (*this)(name); });
   }
   std::vector<std::vector<std::size_t>> operator()(const std::vector<std::vector<std::string>>& lists) const {
-    std::vector<std::vector<std::size_t>> places;
-    for (const std::vector<std::string>& names : lists) places.push_back((*this)(names));
-    return places;
+    return mapped(lists, [&](const std::vector<std::string>& names) { return (*this)(names); });
   }
 
  private:
@@ -74,9 +72,7 @@ void bind_time(const Scene& scene, Problem& problem) {
 }  // namespace
 
 std::vector<eom::hybrid::Signal> input_signals(const Scene& scene) {
-  std::vector<eom::hybrid::Signal> signals;
-  for (const Signal& signal : scene.inputs) signals.push_back(signal.runtime_signal());
-  return signals;
+  return mapped(scene.inputs, &Signal::runtime_signal);
 }
 
 Problem make_problem(const RunRequest& request, const std::string& solver) {

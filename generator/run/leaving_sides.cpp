@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "lists.hpp"
 #include "run/directional_derivative.hpp"
 
 namespace eomgen::run {
@@ -39,9 +40,7 @@ class LeavingMotion {
       if (!x) break;
       rows.push_back(kinks(t_ + h, *x));
     }
-    std::vector<int> result;
-    for (const std::size_t kink : of) result.push_back(side(kink, rows));
-    return result;
+    return mapped(of, [&](std::size_t kink) { return side(kink, rows); });
   }
 
   /// How long, and how far, a motion is on the other side of a surface than `side`; 0: of any.

@@ -18,7 +18,6 @@
 #include "run/monitored_functions.hpp"
 #include "run/parameters.hpp"
 #include "run/start.hpp"
-#include "run/time_functions.hpp"
 #include "symbolic/evaluate.hpp"
 
 namespace eomgen::run {

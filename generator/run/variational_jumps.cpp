@@ -7,6 +7,7 @@
 #include <cmath>
 #include <eom/hybrid/impulses.hpp>
 
+#include "lists.hpp"
 #include "run/central_differences.hpp"
 #include "run/contact_changes.hpp"
 
@@ -110,9 +111,7 @@ std::vector<double> VariationalJumps::sensitivity(const std::vector<double>& x, 
 }
 
 std::vector<double> VariationalJumps::changes_of_time(const std::function<double(const Direction&)>& dt) const {
-  std::vector<double> changes;
-  for (const Direction& d : directions_) changes.push_back(d.scale * dt(d));
-  return changes;
+  return mapped(directions_, [&](const Direction& d) { return d.scale * dt(d); });
 }
 
 /// s += f dt. False: f has no value, and the run ends.

@@ -11,6 +11,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "lists.hpp"
 #include "numeric/dense.hpp"
 #include "numeric/numbers.hpp"
 #include "program/interpret.hpp"
@@ -32,16 +33,10 @@ void raise(Extreme& extreme, double value, const std::string& at) {
   if (!std::isnan(value) && value > extreme.value) extreme = {value, at};
 }
 
-std::vector<cln::cl_R> exact(const std::vector<double>& list) {
-  std::vector<cln::cl_R> result;
-  for (const double x : list) result.push_back(numeric::exact(x));
-  return result;
-}
+std::vector<cln::cl_R> exact(const std::vector<double>& list) { return mapped<cln::cl_R>(list, numeric::exact); }
 
 std::vector<double> inputs(const run::Scene& scene, double t) {
-  std::vector<double> u;
-  for (const run::Signal& signal : scene.inputs) u.push_back(signal(t, t));
-  return u;
+  return mapped(scene.inputs, [&](const run::Signal& signal) { return signal(t, t); });
 }
 
 double condition(const Eigen::MatrixXd& M) {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "lists.hpp"
+
 namespace eomgen::system {
 
 const char* name(Approach approach) { return approach == Approach::one ? "I" : "II"; }
@@ -16,11 +18,7 @@ const char* name(Form form) {
   return "multipliers";
 }
 
-std::vector<symbolic::Symbol> EquationSystem::state_symbols() const {
-  std::vector<symbolic::Symbol> symbols;
-  for (const FirstOrderState& state : states) symbols.push_back(state.symbol);
-  return symbols;
-}
+std::vector<symbolic::Symbol> EquationSystem::state_symbols() const { return mapped(states, &FirstOrderState::symbol); }
 
 bool EquationSystem::has_resets() const {
   return !samples.empty() ||

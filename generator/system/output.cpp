@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "system/output.hpp"
 
-#include <algorithm>
+#include "lists.hpp"
 
 namespace eomgen::system {
 
-const Output* find(const std::vector<Output>& outputs, const std::string& name) {
-  const auto found = std::find_if(outputs.begin(), outputs.end(), [&](const Output& o) { return o.name == name; });
-  return found == outputs.end() ? nullptr : &*found;
-}
+const Output* find(const std::vector<Output>& outputs, const std::string& name) { return find_named(outputs, name); }
 
 std::vector<std::string> names_of(const std::vector<Output>& outputs, OutputKind kind, std::uint32_t index) {
   std::vector<std::string> names;

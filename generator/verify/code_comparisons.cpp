@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "lists.hpp"
 #include "verify/abi_arguments.hpp"
 #include "verify/applied_forces.hpp"
 #include "verify/friction_law.hpp"
@@ -41,9 +42,7 @@ double to_binary64(const Real& value) {
 }
 
 std::vector<double> binary_values(const std::vector<Real>& values) {
-  std::vector<double> result;
-  for (const Real& value : values) result.push_back(to_binary64(value));
-  return result;
+  return mapped(values, [&](const Real& value) { return to_binary64(value); });
 }
 
 /// The state rounded to binary64.
@@ -92,8 +91,7 @@ double compiled_difference(const CompiledForm& form, const Subjects& subjects, S
     if (rounding.empty() && overflows(subjects, arguments)) throw std::domain_error(beyond_binary64);
     return 1;
   }
-  std::vector<Real> precise;
-  for (const double value : *dx) precise.push_back(exact(value));
+  std::vector<Real> precise = mapped(*dx, [&](double value) { return exact(value); });
   const double difference = rhs_difference(precise, reference, s, v, rounding);
   // A sine at a time of 1e300 is pure rounding error in any code: no comparison is possible.
   if (difference > tolerance_binary64 && rounding.empty() && overflows(subjects, arguments))

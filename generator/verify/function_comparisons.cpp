@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "lists.hpp"
 #include "symbolic/evaluate.hpp"
 #include "system/contact_set.hpp"
 #include "verify/abi_arguments.hpp"
@@ -153,9 +154,7 @@ class FunctionComparisons {
     if (!values) return {};
     const AbiResults size = sizes(function, *values);
     if (size.empty()) return {};
-    std::vector<Real> result;
-    for (const Real& one : size[0]) result.push_back(one * power_of_ten(-tally_.digits()));
-    return result;
+    return mapped(size[0], [&](const Real& one) { return one * power_of_ten(-tally_.digits()); });
   }
 
   void prepared(const AbiResults& values) { same_as("rhs", values, 0, "rhs_prepared", "its rhs", at_); }
@@ -196,8 +195,7 @@ class FunctionComparisons {
     std::vector<Ref> M;
     for (std::size_t j = 0; j < n; ++j)
       for (std::size_t i = 0; i < n; ++i) M.push_back(s_.M[i * n + j]);
-    std::vector<Ref> h;
-    for (const Ref f : s_.f) h.push_back(s_.dag->neg(f));
+    std::vector<Ref> h = mapped(s_.f, [&](Ref f) { return s_.dag->neg(f); });
     const SymbolValues lookup = without_mode();
     note("mass", system_name(s_), std::max(against(values, 0, M, lookup), against(values, 1, h, lookup)));
   }
@@ -214,8 +212,7 @@ class FunctionComparisons {
   }
 
   void reactions(const AbiResults& values) {
-    std::vector<Ref> roots;
-    for (const system::Reaction& reaction : s_.reactions) roots.push_back(reaction.value);
+    std::vector<Ref> roots = mapped(s_.reactions, &system::Reaction::value);
     note("reactions", system_name(s_), against(values, 0, roots, lookup_));
   }
 
@@ -224,9 +221,8 @@ class FunctionComparisons {
     std::vector<Ref> roots;
     std::vector<std::size_t> places;
     for (std::size_t i = 0; i < program_.outputs.size(); ++i) {
-      const auto found = std::find_if(s_.outputs.begin(), s_.outputs.end(),
-                                      [&](const system::Output& o) { return o.name == program_.outputs[i]; });
-      if (found == s_.outputs.end()) continue;
+      const auto* const found = find_named(s_.outputs, program_.outputs[i]);
+      if (found == nullptr) continue;
       roots.push_back(found->value);
       places.push_back(i);
     }
@@ -259,8 +255,7 @@ class FunctionComparisons {
   }
 
   void events(const AbiResults& values) {
-    std::vector<Ref> roots;
-    for (const system::Event& event : s_.events) roots.push_back(event.value);
+    std::vector<Ref> roots = mapped(s_.events, &system::Event::value);
     if (!roots.empty()) note("events", system_name(s_), against(values, 0, roots, lookup_));
   }
 

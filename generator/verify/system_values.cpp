@@ -8,6 +8,7 @@
 
 #include <algorithm>
 
+#include "lists.hpp"
 #include "symbolic/evaluate.hpp"
 #include "verify/linear_solve.hpp"
 #include "verify/motion.hpp"
@@ -290,16 +291,14 @@ std::string system_name(const EquationSystem& s) { return s.formulation + " " + 
 std::vector<Real> right_hand_side(const EquationSystem& s, const Oracle& oracle, const State& state) {
   const SymbolValues lookup(oracle, state);
   const Solved solved = solve_system(s, lookup, oracle.digits(), false);
-  std::vector<Real> dx;
-  for (const std::uint32_t i : s.free) dx.push_back(state.qdot[i]);
+  std::vector<Real> dx = mapped(s.free, [&](std::uint32_t i) { return state.qdot[i]; });
   dx.insert(dx.end(), solved.qddot.begin(), solved.qddot.end());
   for (const Real& rate : state_rates(s, lookup, oracle.digits())) dx.push_back(rate);
   return dx;
 }
 
 std::vector<Real> state_rates(const EquationSystem& s, const SymbolValues& lookup, int digits) {
-  std::vector<Ref> rates;
-  for (const system::FirstOrderState& z : s.states) rates.push_back(z.rate);
+  std::vector<Ref> rates = mapped(s.states, &system::FirstOrderState::rate);
   return symbolic::evaluate(*s.dag, rates, lookup, digits);
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "analysis/drawing/placed_solids.hpp"
+#include "lists.hpp"
 
 namespace eomgen::analysis {
 namespace {
@@ -166,9 +167,7 @@ class Animator {
   }
 
   std::vector<Point> positions(std::size_t at) const {
-    std::vector<Point> result;
-    for (const std::vector<double>& row : rows_) result.push_back(vector(row, at));
-    return result;
+    return mapped(rows_, [&](const std::vector<double>& row) { return vector(row, at); });
   }
 
   void add(AnimatedNode node) {

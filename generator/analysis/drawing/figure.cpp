@@ -16,6 +16,7 @@
 #include "analysis/drawing/surfaces_at_start.hpp"
 #include "analysis/drawing/wheels.hpp"
 #include "error.hpp"
+#include "lists.hpp"
 #include "reading/reading.hpp"
 #include "symbolic/evaluate.hpp"
 
@@ -105,8 +106,7 @@ class Drawer {
   }
 
   std::vector<std::size_t> spots() const {
-    std::vector<std::size_t> result;
-    for (const DrawnPlace& place : parts_.places) result.push_back(place.at);
+    std::vector<std::size_t> result = mapped(parts_.places, &DrawnPlace::at);
     for (const DrawnJoint& joint : parts_.joints) result.push_back(joint.at);
     for (const DrawnContact& contact : parts_.contacts) result.insert(result.end(), {contact.at, contact.foot});
     for (const auto* lines : {&parts_.springs, &parts_.dampers}) {
@@ -141,8 +141,7 @@ class Drawer {
   }
 
   std::vector<Point> extent() const {
-    std::vector<Point> result;
-    for (const std::size_t i : spots()) result.push_back(point(i));
+    std::vector<Point> result = mapped(spots(), [&](std::size_t i) { return point(i); });
     if (has_origin()) result.push_back(Point::Zero());
     for (const PlacedSolids& placed : solids_) {
       const auto& world = placed.world;

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "emit/targets.hpp"
+#include "lists.hpp"
 #include "mechanics/imposition.hpp"
 #include "numeric/numbers.hpp"
 #include "pipeline/contact_outputs.hpp"
@@ -89,12 +90,10 @@ class Live {
 
   /// Places of outputs among those of the program.
   std::vector<std::size_t> places_of(const std::vector<std::string>& names) const {
-    std::vector<std::size_t> places;
-    for (const std::string& name : names) {
-      places.push_back(static_cast<std::size_t>(std::find(s_.program.outputs.begin(), s_.program.outputs.end(), name) -
-                                                s_.program.outputs.begin()));
-    }
-    return places;
+    return mapped(names, [&](const std::string& name) {
+      return static_cast<std::size_t>(std::find(s_.program.outputs.begin(), s_.program.outputs.end(), name) -
+                                      s_.program.outputs.begin());
+    });
   }
   std::vector<std::size_t> chosen() const { return places_of(outputs_); }
 
@@ -108,8 +107,7 @@ class Live {
     return names;
   }
   program::Function contact_function() const {
-    const auto outputs = std::find_if(s_.program.functions.begin(), s_.program.functions.end(),
-                                      [](const program::Function& function) { return function.name == "outputs"; });
+    const auto* const outputs = find_named(s_.program.functions, "outputs");
     program::Function function = program::restrict_results(*outputs, places_of(names_of_contacts()));
     function.name = "contact_outputs";
     return function;
@@ -118,10 +116,9 @@ class Live {
     const std::vector<run::ContactOutputs> outputs = pipeline::contact_outputs(derived_.candidates.front());
     const std::vector<std::string> names = names_of_contacts();
     const auto places = [&](const std::vector<std::string>& of) {
-      std::vector<std::size_t> result;
-      for (const std::string& name : of)
-        result.push_back(static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin()));
-      return result;
+      return mapped(of, [&](const std::string& name) {
+        return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+      });
     };
     for (std::size_t j = 0; j < s_.program.contacts.size(); ++j) {
       const run::ContactOutputs& of = outputs[j];

@@ -12,6 +12,7 @@
 
 #include "analysis/shortest_decimal.hpp"
 #include "error.hpp"
+#include "lists.hpp"
 
 namespace eomgen::analysis {
 namespace {
@@ -149,11 +150,7 @@ double Sampling::place(std::size_t axis, std::size_t index) const {
   return (static_cast<double>(sobol(axis, index) ^ shift) + 0.5) * 0x1p-32;
 }
 
-std::vector<std::string> Sampling::names() const {
-  std::vector<std::string> result;
-  for (const SampledAxis& axis : axes_) result.push_back(axis.parameter);
-  return result;
-}
+std::vector<std::string> Sampling::names() const { return mapped(axes_, &SampledAxis::parameter); }
 
 std::vector<symbolic::Rational> Sampling::point(std::size_t index) const {
   std::vector<symbolic::Rational> result;

@@ -9,6 +9,7 @@
 #include "emit/metadata.hpp"
 #include "emit/text.hpp"
 #include "error.hpp"
+#include "lists.hpp"
 #include "skeletons/casadi_model_casadi_c.hpp"
 
 namespace eomgen::emit {
@@ -286,13 +287,11 @@ std::vector<EmittedFile> emit_casadi(const program::Program& program, const Emis
   std::vector<std::vector<std::pair<std::string, std::string>>> functions;
   for (const CasadiFunction& f : casadi.functions()) {
     const auto names = [](const std::vector<Port>& ports) {
-      std::vector<std::string> list;
-      for (const Port& port : ports) list.push_back("\"" + port.name + "\"");
+      std::vector<std::string> list = mapped(ports, [&](const Port& port) { return "\"" + port.name + "\""; });
       return cases(list);
     };
     const auto sparsities = [&patterns](const std::vector<Port>& ports) {
-      std::vector<std::string> list;
-      for (const Port& port : ports) list.push_back(patterns.place(port.pattern));
+      std::vector<std::string> list = mapped(ports, [&](const Port& port) { return patterns.place(port.pattern); });
       return cases(list);
     };
     functions.push_back({{"f", f.name},
