@@ -9,17 +9,15 @@
 #include <stdexcept>
 #include <string>
 
+#include "results.hpp"
+
 namespace eomgen::work {
 
 /// Thrown by work::consume_budget after a request to stop. It is not a std::exception, so that error recovery does not
 /// catch it.
 struct Interrupted {};
 
-/// A result that is not computed, and the reason: "acceleration of roll.1", "too many terms to be written out".
-struct LeftOut {
-  std::string what, why;
-  bool over_budget = true;  // false: it does not apply
-};
+using eomgen::LeftOut;
 
 /// Thrown by work::consume_budget when a budget is exhausted.
 struct BudgetExceeded : std::length_error {

@@ -25,12 +25,6 @@ const std::vector<std::string>& equation_keys();
 /// Whether "all" shows this key. Other forms of what it shows, and long tables, are shown on request only.
 bool is_part_of_all(const std::string& key);
 
-struct Multiplier {
-  std::string name, latex;
-  std::string constraint;  // label of the constraint
-  std::string meaning;     // a phrase
-};
-
 struct Equations {
   system::Approach approach = system::Approach::two;
   std::vector<print::PrintedFormula> items;

@@ -72,7 +72,7 @@ void add_constraints(const mechanics::Mechanics& m, Examination& found) {
     const mechanics::Constraint& c = m.constraints[k];
     const auto of_joint = [&](const model::Joint& joint) { return joint.name == c.name; };
     const bool joint = std::any_of(m.model->joints.begin(), m.model->joints.end(), of_joint);
-    ExaminedConstraint one;
+    ConstraintClass one;
     one.name = c.label;
     one.kind = c.holonomic() ? "holonomic" : "velocity";
     one.integrable = mechanics::name(m.classification[k].integrable);
@@ -111,7 +111,7 @@ void add_joints(const mechanics::Mechanics& m, Examination& found) {
 
 void add_forces(mechanics::Mechanics& m, Examination& found) {
   for (const conservation::ForceClassification& force : conservation::classify_forces(m)) {
-    ExaminedForce one;
+    ForceClass one;
     one.name = force.name;
     one.conservative = conservation::name(force.conservative);
     if (force.potential) one.potential = item_of(m, *force.potential);

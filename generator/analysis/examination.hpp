@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "error.hpp"
 #include "model/model.hpp"
 #include "print/render.hpp"
 #include "work.hpp"
@@ -40,36 +39,11 @@ struct ExaminedReset {
   bool sample = false;
 };
 
-/// A parameter, or an input with its default value.
-struct ExaminedValue {
-  std::string name, unit;
-  std::string value;    // a decimal, or an expression of other parameters
-  std::string written;  // as in the model file
-};
-
-struct ExaminedConstraint {
-  std::string name, kind;                // "holonomic" or "velocity"
-  std::string integrable;                // "yes", "no", "unknown"
-  std::optional<std::string> integral;   // the integrated equation
-  bool redundant = false;                // follows from others and has no multiplier
-  std::optional<bool> determined;        // whether the motion determines its force; not set for joints
-  std::string treatment, reason;         // treatment in the equations; reason for `integrable`
-  std::vector<std::string> integral_of;  // the constraints that together have this integral
-};
-
 struct ExaminedJoint {
   std::string name, type;
   std::array<std::string, 2> bodies;
   std::string axes;
   std::vector<std::string> reactions, undetermined;  // names of outputs
-};
-
-struct ExaminedForce {
-  std::string name, conservative;  // "yes", "no", "unknown"
-  std::optional<print::PrintedFormula> potential;
-  std::vector<std::string> domain;  // conditions under which the potential is valid
-  bool many_valued = false, in_energy = false;
-  std::string reason;
 };
 
 struct ExaminedContact {
@@ -102,10 +76,10 @@ struct Examination {
   std::vector<ExaminedState> states;
   std::vector<ExaminedDiscrete> discrete;
   std::vector<ExaminedReset> resets;
-  std::vector<ExaminedValue> parameters, inputs;
-  std::vector<ExaminedConstraint> constraints;
+  std::vector<ExaminedQuantity> parameters, inputs;
+  std::vector<ConstraintClass> constraints;
   std::vector<ExaminedJoint> joints;
-  std::vector<ExaminedForce> forces;
+  std::vector<ForceClass> forces;
   std::vector<ExaminedContact> contacts;
   std::vector<ExaminedConserved> conserved;
   std::vector<ExaminedSet> singular;

@@ -8,20 +8,12 @@
 #include <vector>
 
 #include "reference/reference.hpp"
+#include "results.hpp"
 #include "run/runner.hpp"
 
 namespace eomgen::bench {
 
-struct Row {
-  std::string solver;
-  double rtol = 0, step = 0;  // one of them is 0
-  double error = 0;        // of the end state: the largest over the components, relative to the largest value of each
-  double error_along = 0;  // the largest over all times of the reference
-  std::vector<double> errors;  // per state at the end, absolute
-  double seconds = 0;          // median
-  std::size_t repeats = 0, steps = 0, rejected = 0, rhs_evaluations = 0;
-  std::string outcome;  // "interrupted": the time limit was exceeded
-};
+using Row = BenchmarkRow;
 
 /// A solver of another library: its name, and an integration to the end for a tolerance. Row::steps is 0 if the library
 /// does not report the steps.

@@ -10,9 +10,9 @@ Json list(const std::vector<std::string>& names) {
   return result;
 }
 
-Json values(const std::vector<analysis::ExaminedValue>& quantities, const char* key, bool written) {
+Json values(const std::vector<ExaminedQuantity>& quantities, const char* key, bool written) {
   Json result = Json::array();
-  for (const analysis::ExaminedValue& q : quantities) {
+  for (const ExaminedQuantity& q : quantities) {
     result.push_back({{"name", q.name}, {"unit", q.unit}, {key, q.value}});
     if (written) result.back()["written"] = q.written;
   }
@@ -21,7 +21,7 @@ Json values(const std::vector<analysis::ExaminedValue>& quantities, const char* 
 
 Json constraints(const analysis::Examination& found) {
   Json result = Json::array();
-  for (const analysis::ExaminedConstraint& c : found.constraints) {
+  for (const ConstraintClass& c : found.constraints) {
     result.push_back({{"name", c.name},
                       {"kind", c.kind},
                       {"integrable", c.integrable},
@@ -50,7 +50,7 @@ Json joints(const analysis::Examination& found) {
 
 Json forces(const analysis::Examination& found) {
   Json result = Json::array();
-  for (const analysis::ExaminedForce& f : found.forces) {
+  for (const ForceClass& f : found.forces) {
     result.push_back({{"name", f.name},
                       {"conservative", f.conservative},
                       {"potential", f.potential ? Json(f.potential->text) : Json(nullptr)},

@@ -8,13 +8,11 @@
 
 #include "emit/context.hpp"
 #include "program/program.hpp"
+#include "results.hpp"
 
 namespace eomgen::emit {
 
-struct EmittedFile {
-  std::string name;  // without a folder
-  std::string text;
-};
+using EmittedFile = SourceFile;
 
 struct TargetEntry {
   const char* name;

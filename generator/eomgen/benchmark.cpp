@@ -36,9 +36,7 @@ Benchmark Model::benchmark(const BenchmarkOptions& options, const CallControl& c
     request.other_libraries = options.other_libraries;
     const analysis::Benchmark found = analysis::benchmark(request);
     Benchmark result;
-    for (const bench::Row& row : found.rows)
-      result.rows.push_back(
-          {row.solver, row.rtol, row.step, row.error, row.seconds, row.steps, row.rhs_evaluations, row.outcome});
+    result.rows = found.rows;
     for (const auto& [solver, why] : found.left_out) result.left_out.push_back({solver, why});
     result.reference_digits = found.reference.digits_at_end;
     result.advice = bench::recommend_solvers(found.rows);

@@ -22,16 +22,6 @@ struct BenchmarkOptions {
   std::uint64_t seed = 1;
 };
 
-/// One run of one solver.
-struct BenchmarkRow {
-  std::string solver;
-  double rtol = 0, step = 0;  // tolerance or fixed step in s; the other is 0
-  double error = 0;           // of the final state, relative to the largest value of each component
-  double seconds = 0;         // median run time, s
-  std::size_t steps = 0, rhs_evaluations = 0;
-  std::string outcome;
-};
-
 /// Result of Model::benchmark().
 struct Benchmark {
   std::vector<BenchmarkRow> rows;

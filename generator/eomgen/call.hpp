@@ -73,9 +73,4 @@ pipeline::ApproachChoice approach_choice(Approach approach);
 /// Converts each value to the exact shortest decimal that denotes it, as on the command line. Throws Error for values
 /// that are not finite.
 std::map<std::string, symbolic::Rational> exact_rationals(const std::map<std::string, double>& values);
-/// Copies a printed formula to the public structure.
-Formula formula_of(const print::PrintedFormula& item);
-/// Copies a list of skipped results to the public structure.
-std::vector<LeftOut> omissions_of(const std::vector<work::LeftOut>& list);
-
 }  // namespace eomgen

@@ -18,14 +18,6 @@ struct VerifyOptions {
   bool compile = true;      // also checks the emitted code; needs a C compiler
 };
 
-/// Comparison of two derivations, or of a derivation with code generated from it.
-struct Comparison {
-  std::string a, b;
-  bool shares_code = false;  // false: the two are independent implementations
-  double max_relative_difference = 0, tolerance = 0;
-  bool pass = false;
-};
-
 /// Verdict of a verification with all comparisons.
 struct Certificate {
   bool pass = false;

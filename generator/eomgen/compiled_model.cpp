@@ -9,6 +9,7 @@
 #include "derive/inertias.hpp"
 #include "eomgen/compiled_state.hpp"
 #include "eomgen/model.hpp"
+#include "lists.hpp"
 
 namespace eomgen {
 namespace {
@@ -22,9 +23,7 @@ SceneValues values_of(const pipeline::BoundRun& run, const std::string& solver, 
 
 template <class T>
 std::vector<Quantity> quantities(const std::vector<T>& list) {
-  std::vector<Quantity> result;
-  for (const T& entry : list) result.push_back({entry.name, entry.unit.text});
-  return result;
+  return mapped(list, [&](const T& entry) -> Quantity { return {entry.name, entry.unit.text}; });
 }
 
 /// The units of the names of outputs; coordinates and their rates are outputs, too.

@@ -11,35 +11,12 @@
 
 namespace eomgen {
 
-/// ConstraintClassification of one constraint.
-struct ConstraintClass {
-  std::string name, kind;               // "holonomic" or "velocity"
-  std::string integrable;               // "yes", "no", "unknown"
-  std::optional<std::string> integral;  // the integrated equation
-  bool redundant = false;               // follows from others and has no multiplier
-  std::string treatment, reason;        // treatment in the equations; reason for `integrable`
-};
-
-/// Classification of one force.
-struct ForceClass {
-  std::string name, conservative;  // "yes", "no", "unknown"
-  std::optional<Formula> potential;
-  std::string reason;
-};
-
 /// A quantity that is constant along every motion.
 struct ConservedQuantity {
   std::string name, title;
   Formula expression;
   bool proven = false;                       // symbolically; false: confirmed numerically only
   std::vector<std::string> where_zero = {};  // parameters that must be 0 for it, as they are; usually none
-};
-
-/// A coordinate, a parameter, or an input with its default value.
-struct ExaminedQuantity {
-  std::string name;
-  std::string unit;   // SI; "" if unknown
-  std::string value;  // a decimal, or an expression of other parameters; "" of coordinates
 };
 
 /// Result of `eomgen check`.

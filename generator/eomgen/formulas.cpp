@@ -12,6 +12,7 @@
 #include "derive/formulations/lagrange.hpp"
 #include "eomgen/call.hpp"
 #include "eomgen/model.hpp"
+#include "lists.hpp"
 #include "symbolic/op_names.hpp"
 
 namespace eomgen {
@@ -56,9 +57,7 @@ class Writer {
   }
   std::uint32_t operator()(symbolic::Ref r) const { return place_.at(r.id); }
   std::vector<std::uint32_t> operator()(const std::vector<symbolic::Ref>& list) const {
-    std::vector<std::uint32_t> result;
-    for (const symbolic::Ref r : list) result.push_back((*this)(r));
-    return result;
+    return mapped(list, [&](symbolic::Ref r) { return (*this)(r); });
   }
 
   std::vector<Node> nodes;
@@ -78,19 +77,15 @@ Examination Model::examine(const CallControl& control) const {
       result.coordinate_units.push_back({c.name, c.unit, ""});
       if (c.eliminated) result.eliminated.push_back(c.name);
     }
-    for (const auto& p : found.parameters) result.parameters.push_back({p.name, p.unit, p.value});
-    for (const auto& u : found.inputs) result.inputs.push_back({u.name, u.unit, u.value});
+    result.parameters = found.parameters;
+    result.inputs = found.inputs;
     result.degrees_of_freedom = found.degrees_of_freedom;
-    for (const auto& c : found.constraints)
-      result.constraints.push_back({c.name, c.kind, c.integrable, c.integral, c.redundant, c.treatment, c.reason});
-    for (const auto& f : found.forces) {
-      result.forces.push_back({f.name, f.conservative, std::nullopt, f.reason});
-      if (f.potential) result.forces.back().potential = formula_of(*f.potential);
-    }
+    result.constraints = found.constraints;
+    result.forces = found.forces;
     for (const auto& c : found.conserved)
-      result.conserved.push_back({c.name, c.title, formula_of(c.expression), c.certainty != "numerical", c.where_zero});
-    for (const auto& s : found.singular) result.singular.push_back(formula_of(s.set));
-    result.left_out = omissions_of(found.left_out);
+      result.conserved.push_back({c.name, c.title, c.expression, c.certainty != "numerical", c.where_zero});
+    for (const auto& s : found.singular) result.singular.push_back(s.set);
+    result.left_out = found.left_out;
     return result;
   });
 }
@@ -102,10 +97,10 @@ Equations Model::equations(const EquationsOptions& options, const CallControl& c
     Equations result;
     result.approach = system::name(found.approach);
     for (const print::PrintedFormula& item : found.items) {
-      if (item.left_out.empty()) result.formulas.push_back(formula_of(item));
+      if (item.left_out.empty()) result.formulas.push_back(item);
     }
-    result.left_out = omissions_of(found.left_out);
-    for (const auto& m : found.multipliers) result.multipliers.push_back({m.name, m.latex, m.constraint, m.meaning});
+    result.left_out = found.left_out;
+    result.multipliers = found.multipliers;
     result.interrupted = found.interrupted;
     return result;
   });

@@ -7,28 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "eomgen/results.hpp"
+
 namespace eomgen {
 
 /// When constraints are imposed: eqs. (2.96) to (2.101) of docs/theory.md. Approach I imposes them after the derivation
 /// and yields their forces; approach II imposes them before it. `automatic`: I if there is something to eliminate.
 enum class Approach { automatic, one, two };
-
-/// A result that was skipped, and why.
-struct LeftOut {
-  std::string what, why;
-};
-
-/// One printed formula. `key`: its kind, one of "equations", "explicit", "constraints", "reactions", "friction",
-/// "energies", "lagrangian", "conserved", "singular", "metric", "christoffel", ...
-struct Formula {
-  std::string key, name, coordinate, role;
-  std::string text, latex, mathml;
-};
-
-/// A Lagrange multiplier: its name, its constraint and its mechanical meaning.
-struct Multiplier {
-  std::string name, latex, constraint, meaning;  // "lambda", "\lambda", label of the constraint, a phrase
-};
 
 /// Options of Model::equations().
 struct EquationsOptions {

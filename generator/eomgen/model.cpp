@@ -8,6 +8,7 @@
 
 #include "analysis/shortest_decimal.hpp"
 #include "eomgen/prepared_runs.hpp"
+#include "lists.hpp"
 #include "model/model.hpp"
 #include "run/quantities.hpp"
 
@@ -16,9 +17,7 @@ namespace {
 
 template <class T>
 std::vector<std::string> names_of(const std::vector<T>& list) {
-  std::vector<std::string> names;
-  for (const T& entry : list) names.push_back(entry.name);
-  return names;
+  return mapped(list, &T::name);
 }
 
 }  // namespace
@@ -50,16 +49,6 @@ std::map<std::string, symbolic::Rational> exact_rationals(const std::map<std::st
   return result;
 }
 
-Formula formula_of(const print::PrintedFormula& item) {
-  return {item.key, item.name, item.coordinate, item.role, item.text, item.latex, item.mathml};
-}
-
-std::vector<LeftOut> omissions_of(const std::vector<work::LeftOut>& list) {
-  std::vector<LeftOut> result;
-  for (const work::LeftOut& l : list) result.push_back({l.what, l.why});
-  return result;
-}
-
 Model::Model(model::Model read)
     : read_(new model::Model(std::move(read)), LockedDelete{}), runs_(new PreparedRuns(read_), LockedDelete{}) {}
 
@@ -83,9 +72,7 @@ std::vector<std::string> Model::inputs() const { return names_of(read_->inputs);
 std::vector<std::string> Model::scenes() const { return names_of(read_->scenes); }
 
 std::vector<std::string> Model::warnings() const {
-  std::vector<std::string> result;
-  for (const Warning& warning : read_->warnings) result.push_back(format_warning(warning));
-  return result;
+  return mapped(read_->warnings, [&](const Warning& warning) { return format_warning(warning); });
 }
 
 std::vector<Warning> Model::reader_warnings() const { return read_->warnings; }

@@ -72,7 +72,7 @@ void take_result(const run::RunResult& from, Motion& to) {
   to.final = from.final;
   to.error_estimate = from.error_estimate;
   to.estimate_note = from.estimate_note;
-  for (const run::Invariant& i : from.invariants) to.invariants.push_back({i.name, i.initial, i.max_relative_drift});
+  to.invariants = from.invariants;
   to.power_balance = from.power_balance;
   to.constraint_drift = from.constraint_drift;
   to.steps = from.statistics.steps;

@@ -56,12 +56,6 @@ struct MotionEvent {
   std::vector<ContactImpulse> impulses = {};  // of an impact: of all contacts that took part
 };
 
-/// A conserved quantity and its numerical drift.
-struct Invariant {
-  std::string name;
-  double initial = 0, max_relative_drift = 0;
-};
-
 /// Result of Model::run(). All values in SI units.
 struct Motion {
   std::string outcome;                                // "done", "stopped_by_event", or a failure (docs/runtime.md)

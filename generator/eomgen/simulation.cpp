@@ -10,6 +10,7 @@
 #include "eomgen/compiled_state.hpp"
 #include "eomgen/motion_event.hpp"
 #include "eomgen/validation.hpp"
+#include "lists.hpp"
 #include "model/names.hpp"
 #include "run/eligibility.hpp"
 #include "run/methods.hpp"
@@ -134,8 +135,7 @@ Advance Simulation::Data::advance(double t_end, bool one_step, const CallControl
 }
 
 std::size_t Simulation::Data::place_of_input(const std::string& name) const {
-  std::vector<std::string> names;
-  for (const Quantity& input : model->inputs) names.push_back(input.name);
+  std::vector<std::string> names = mapped(model->inputs, &Quantity::name);
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
     throw Error("simulation", {}, fmt::format("there is no input {}", model::quote(name)),
@@ -205,8 +205,7 @@ void Simulation::set_state(double t, std::span<const double> x) {
   require_finite(x, "a state");
   require_finite({&t, 1}, "the time of a state");
   const std::vector<double> gaps = data_->run.gaps(t, x);
-  std::vector<std::string> contacts;
-  for (const eom::Contact& contact : data_->bound->code().contacts) contacts.push_back(contact.name);
+  std::vector<std::string> contacts = mapped(data_->bound->code().contacts, &eom::Contact::name);
   for (const eom::contacts::Description& contact : data_->bound->code().contact_set.contacts)
     contacts.push_back(contact.name);
   std::vector<bool> open(contacts.size());

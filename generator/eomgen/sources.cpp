@@ -18,9 +18,8 @@ Certificate Model::verify(const VerifyOptions& options, const CallControl& contr
     result.pass = found.pass;
     result.points = found.points;
     result.digits = found.options.digits;
-    for (const verify::Comparison& c : found.comparisons)
-      result.comparisons.push_back({c.a, c.b, c.shares_code, c.max_relative_difference, c.tolerance, c.pass});
-    result.left_out = omissions_of(found.left_out);
+    result.comparisons = found.comparisons;
+    result.left_out = found.left_out;
     result.summary = found.summary();
     result.interrupted = found.interrupted;
     return result;
@@ -41,7 +40,7 @@ Sources Model::emit(const EmitOptions& options, const CallControl& control) cons
                                       options.real_type == "float"};
     const pipeline::Emission emission = pipeline::emit_model(read_, request);
     Sources result;
-    for (const emit::EmittedFile& file : emission.files) result.files.push_back({file.name, file.text});
+    result.files = emission.files;
     result.formulation = emission.program.formulation;
     result.approach = system::name(emission.program.approach);
     result.form = system::name(emission.program.form);

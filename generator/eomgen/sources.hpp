@@ -24,12 +24,6 @@ struct EmitOptions {
   std::string real_type = "double";  // "double" or "float" (docs/abi.md, "Single precision")
 };
 
-/// One generated file.
-struct SourceFile {
-  std::string name;  // without folder
-  std::string text;
-};
-
 /// Result of Model::emit().
 struct Sources {
   std::vector<SourceFile> files;

@@ -7,6 +7,7 @@
 
 #include "reading/reading.hpp"
 #include "reading/solved_form.hpp"
+#include "results.hpp"
 
 namespace eomgen::print {
 
@@ -44,8 +45,7 @@ reading::Formula partial(reading::Formula of, reading::Formula by);
 /// The scalar product a . b.
 reading::Formula dot_product(reading::Formula a, reading::Formula b);
 
-struct PrintedFormula;  // render.hpp
-std::vector<PrintedFormula> render(const mechanics::Mechanics& mechanics, const std::vector<Statement>& statements);
+std::vector<eomgen::Formula> render(const mechanics::Mechanics& mechanics, const std::vector<Statement>& statements);
 
 /// Adds the statements that `show` selects, in a fixed order of keys. If an interruption is thrown, the statements so
 /// far are complete.

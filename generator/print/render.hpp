@@ -10,18 +10,11 @@
 #include "reading/reading.hpp"
 #include "reading/routh.hpp"
 #include "reading/solved_form.hpp"
+#include "results.hpp"
 
 namespace eomgen::print {
 
-/// One printed formula. `key`: equations (momentum form, one per coordinate), explicit (M qddot + h = Q), reactions,
-/// friction, basis, metric, christoffel, line_element, frenet, energies, lagrangian, constraints, singular.
-struct PrintedFormula {
-  std::string key, name;
-  std::string coordinate;
-  std::string text, latex, mathml;
-  std::string role;
-  std::string left_out = {};  // reason if the formula is omitted, else empty
-};
+using PrintedFormula = eomgen::Formula;
 
 /// The lengths with a letter in the formulas of one reader: s, or s_1, s_2, ...
 struct LengthLetters {

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "results.hpp"
 #include "run/eligibility.hpp"
 #include "run/scene.hpp"
 #include "run/solver_reason.hpp"
@@ -28,10 +29,7 @@ using eom::hybrid::WatchedEvent;
 /// and functions for a solver only if they were requested.
 using eom::hybrid::Code;
 
-struct Invariant {
-  std::string name;
-  double initial = 0, max_relative_drift = 0;
-};
+using eomgen::Invariant;
 using RunEvent = eom::hybrid::Event;
 
 struct KinkCrossings {

@@ -85,14 +85,7 @@ struct Subjects {
   std::vector<CompiledForm> compiled;
 };
 
-struct Comparison {
-  std::string a, b;
-  bool shares_code = false;
-  double max_relative_difference = 0;
-  double tolerance = 0;
-  int digits_agreed = 0;  // at most the requested digits
-  bool pass = true;
-};
+using eomgen::Comparison;
 
 struct Certificate {
   // Defined in the .cpp file, so that they are compiled only once.

@@ -111,7 +111,7 @@ std::string heading_of(const print::PrintedFormula& item) {
 /// `asked`: items that were named one by one; the text lists those that the model lacks.
 std::string readable(const std::vector<print::PrintedFormula>& items, const std::string& approach,
                      const std::string& format, const std::vector<work::LeftOut>& left_out,
-                     const std::vector<analysis::Multiplier>& multipliers, const std::vector<std::string>& asked) {
+                     const std::vector<Multiplier>& multipliers, const std::vector<std::string>& asked) {
   std::string text = fmt::format("Approach {}\n", approach), heading;
   for (const print::PrintedFormula& item : items) {
     if (!item.left_out.empty()) continue;
@@ -127,13 +127,13 @@ std::string readable(const std::vector<print::PrintedFormula>& items, const std:
   if (!left_out.empty()) text += "\nleft out\n";
   for (const work::LeftOut& l : left_out) text += fmt::format("  {}: {}\n", l.what, l.why);
   if (!multipliers.empty()) text += "\nmeaning of the multipliers\n";
-  for (const analysis::Multiplier& entry : multipliers) text += fmt::format("  {}: {}\n", entry.name, entry.meaning);
+  for (const Multiplier& entry : multipliers) text += fmt::format("  {}: {}\n", entry.name, entry.meaning);
   return text;
 }
 
-Json to_json(const std::vector<analysis::Multiplier>& multipliers) {
+Json to_json(const std::vector<Multiplier>& multipliers) {
   Json result = Json::array();
-  for (const analysis::Multiplier& m : multipliers)
+  for (const Multiplier& m : multipliers)
     result.push_back({{"name", m.name}, {"of", m.constraint}, {"meaning", m.meaning}, {"latex", m.latex}});
   return result;
 }
