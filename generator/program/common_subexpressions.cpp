@@ -30,7 +30,7 @@ class Numbers {
 
  private:
   std::vector<Rational> values_;
-  NodeIndex index_;
+  symbolic::HashIndex index_;
 };
 
 class ProductSharing {
@@ -252,7 +252,7 @@ class SumSharing {
   FrequentPairQueue pairs_;
   Numbers numbers_;
   std::vector<Monomial> monomials_;
-  NodeIndex index_;
+  symbolic::HashIndex index_;
   std::vector<Row> rows_;
 };
 

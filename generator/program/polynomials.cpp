@@ -37,31 +37,6 @@ std::uint64_t hash_mix(std::uint64_t a, std::uint64_t b) {
   return z ^ (z >> 31);
 }
 
-void NodeIndex::reserve(std::size_t nodes) {
-  std::size_t size = std::max<std::size_t>(64, slots_.size());
-  while (size < 2 * nodes) size *= 2;
-  if (size == slots_.size()) return;
-  const std::vector<Slot> old = std::exchange(slots_, std::vector<Slot>(size));
-  // Starts at an empty slot, so that nodes of equal hash keep their order.
-  std::size_t first = 0;
-  while (first < old.size() && old[first].taken) ++first;
-  for (std::size_t i = 0; i < old.size(); ++i) {
-    const Slot& slot = old[(first + i) & (old.size() - 1)];
-    if (slot.taken) place(slot);
-  }
-}
-
-void NodeIndex::place(const Slot& slot) {
-  std::size_t at = slot.hash & (slots_.size() - 1);
-  while (slots_[at].taken) at = (at + 1) & (slots_.size() - 1);
-  slots_[at] = slot;
-}
-
-void NodeIndex::add(std::uint64_t hash, NodeId node) {
-  reserve(++taken_);
-  place({hash, node, true});
-}
-
 namespace {
 
 std::uint64_t hash(const std::vector<Term>& terms, std::uint64_t start) {

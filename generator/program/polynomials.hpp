@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "program/program.hpp"
+#include "symbolic/hash_index.hpp"
 #include "symbolic/small_vector.hpp"
 
 namespace eomgen::program {
@@ -57,33 +58,6 @@ struct Label {
 struct PivotPair {
   Term pivot, scale;  // scale 0: the pivot must not be exactly zero
   friend bool operator==(const PivotPair&, const PivotPair&) = default;
-};
-
-/// An index of nodes by hash. Nodes with equal hashes keep their order of insertion.
-class NodeIndex {
- public:
-  /// The first node with this hash that satisfies `is_it`; null if there is none.
-  template <class IsIt>
-  const NodeId* find(std::uint64_t hash, const IsIt& is_it) const {
-    if (slots_.empty()) return nullptr;
-    for (std::size_t at = hash & (slots_.size() - 1); slots_[at].taken; at = (at + 1) & (slots_.size() - 1)) {
-      if (slots_[at].hash == hash && is_it(slots_[at].node)) return &slots_[at].node;
-    }
-    return nullptr;
-  }
-  void add(std::uint64_t hash, NodeId node);
-  void reserve(std::size_t nodes);
-
- private:
-  struct Slot {
-    std::uint64_t hash = 0;
-    NodeId node = 0;
-    bool taken = false;
-  };
-  void place(const Slot& slot);
-
-  std::vector<Slot> slots_;  // the size is 0 or a power of 2
-  std::size_t taken_ = 0;
 };
 
 class PolynomialGraph {
@@ -140,7 +114,7 @@ class PolynomialGraph {
   bool has_square(const Monomial& monomial) const;
   bool apply_pythagoras(std::vector<Term>& terms);
   std::vector<Node> nodes_;
-  NodeIndex index_;
+  symbolic::HashIndex index_;
 };
 
 /// Visits nodes once each, operands before users, without recursion.

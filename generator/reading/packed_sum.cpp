@@ -151,41 +151,23 @@ std::uint64_t PackedSum::hash(const Word* term) const {
   return h;
 }
 
-PackedSum::Entry PackedSum::find(const Word* wanted) const {
-  if (slots_.empty()) return none;
-  const std::uint64_t h = hash(wanted);
-  const std::size_t mask = slots_.size() - 1;
-  for (std::size_t at = h & mask; slots_[at] != none; at = (at + 1) & mask) {
-    const Entry entry = slots_[at];
-    if (entries_[entry].hash == h && std::equal(wanted, wanted + words_, term(entry))) return entry;
-  }
-  return none;
+const PackedSum::Entry* PackedSum::find(std::uint64_t hash, const Word* wanted) const {
+  return index_.find(hash, [&](Entry entry) { return std::equal(wanted, wanted + words_, term(entry)); });
 }
 
-void PackedSum::grow() {
-  slots_.assign(std::max<std::size_t>(64, 2 * slots_.size()), none);
-  const std::size_t mask = slots_.size() - 1;
-  for (Entry entry = 0; entry < entries_.size(); ++entry) {
-    std::size_t at = entries_[entry].hash & mask;
-    while (slots_[at] != none) at = (at + 1) & mask;
-    slots_[at] = entry;
-  }
+PackedSum::Entry PackedSum::find(const Word* wanted) const {
+  const Entry* const found = find(hash(wanted), wanted);
+  return found != nullptr ? *found : none;
 }
 
 std::pair<PackedSum::Entry, bool> PackedSum::add(const Word* wanted, const Rational& coefficient) {
-  Entry entry = find(wanted);
-  if (entry == none) {
-    entry = static_cast<Entry>(entries_.size());
+  const std::uint64_t h = hash(wanted);
+  const Entry* const found = find(h, wanted);
+  const Entry entry = found != nullptr ? *found : static_cast<Entry>(entries_.size());
+  if (found == nullptr) {
     keys_.insert(keys_.end(), wanted, wanted + words_);
-    entries_.push_back({hash(wanted), 0, false});
-    if (2 * entries_.size() > slots_.size()) {
-      grow();
-    } else {
-      const std::size_t mask = slots_.size() - 1;
-      std::size_t at = entries_.back().hash & mask;
-      while (slots_[at] != none) at = (at + 1) & mask;
-      slots_[at] = entry;
-    }
+    entries_.push_back({0, false});
+    index_.add(h, entry);
   }
   StoredTerm& held = entries_[entry];
   const bool was = !symbolic::is_zero(held.coefficient);

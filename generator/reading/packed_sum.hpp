@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "reading/sum.hpp"
+#include "symbolic/hash_index.hpp"
 
 namespace eomgen::reading {
 
@@ -92,18 +93,17 @@ class PackedSum {
 
  private:
   struct StoredTerm {
-    std::uint64_t hash;
     Rational coefficient;
     bool listed = false;
   };
   std::uint64_t hash(const Word* term) const;
-  void grow();
+  const Entry* find(std::uint64_t hash, const Word* term) const;
 
   const Lanes* lanes_;
   std::size_t words_, alive_ = 0;
   std::vector<Word> keys_;
   std::vector<StoredTerm> entries_;
-  std::vector<Entry> slots_;          // their number is a power of 2; half are empty
+  symbolic::HashIndex index_;
   std::vector<Entry> order_, added_;  // listed, ascending; added since
 };
 

@@ -68,27 +68,37 @@ Sum operator*(const Rational& factor, const Sum& a) {
 
 namespace {
 
+/// Calls take(x, y) for each atom of two monomials, ascending, with its factors; null in the monomial that lacks it.
+/// Ends with false once `take` returns false.
+template <class Take>
+bool merge(const Monomial& a, const Monomial& b, const Take& take) {
+  auto i = a.begin(), j = b.begin();
+  while (i != a.end() || j != b.end()) {
+    const int c = i == a.end() ? 1 : j == b.end() ? -1 : compare(*i->atom, *j->atom);
+    const Factor *const x = c <= 0 ? &*i++ : nullptr, *const y = c >= 0 ? &*j++ : nullptr;
+    if (!take(x, y)) return false;
+  }
+  return true;
+}
+
+/// The product of factors with the same atom; one of them may be null.
+Factor product_of(const Factor* x, const Factor* y) {
+  if (y == nullptr) return *x;
+  if (x == nullptr) return *y;
+  return {x->atom, x->exponent + y->exponent};
+}
+
 /// The factors of both, unless a power of a sum becomes an integer power.
 bool multiply_factors(const Monomial& a, const Monomial& b, Monomial& product) {
   product.clear();
   product.reserve(a.size() + b.size());
-  auto i = a.begin(), j = b.begin();
-  while (i != a.end() || j != b.end()) {
-    const int c = i == a.end() ? 1 : j == b.end() ? -1 : compare(*i->atom, *j->atom);
-    if (c != 0) {
-      const Factor& factor = c < 0 ? *i++ : *j++;
-      if (is_whole_power_to_expand(factor)) return false;
-      product.push_back(factor);
-      continue;
-    }
-    Factor factor{i->atom, i->exponent + j->exponent};
-    ++i;
-    ++j;
-    if (cln::zerop(factor.exponent)) continue;
+  return merge(a, b, [&](const Factor* x, const Factor* y) {
+    Factor factor = product_of(x, y);
+    if (cln::zerop(factor.exponent)) return true;
     if (is_whole_power_to_expand(factor)) return false;
     product.push_back(std::move(factor));
-  }
-  return true;
+    return true;
+  });
 }
 
 /// sum += coefficient a b; counts the operations of the product and of the sum.
@@ -110,27 +120,15 @@ Sum multiply(const Monomial& a, const Monomial& b) {
   if (multiply_factors(a, b, product)) return {std::move(product), 1};
   product.clear();
   Sum whole(1);
-  const auto keep = [&](const Factor& factor) {
-    if (cln::zerop(factor.exponent)) return;
-    if (!is_whole_power_to_expand(factor)) {
-      product.push_back(factor);
-      return;
-    }
-    whole = whole * power(factor.atom->args[0], factor.exponent);
-  };
-  auto i = a.begin(), j = b.begin();
-  while (i != a.end() || j != b.end()) {
-    const int c = i == a.end() ? 1 : j == b.end() ? -1 : compare(*i->atom, *j->atom);
-    if (c < 0)
-      keep(*i++);
-    else if (c > 0)
-      keep(*j++);
-    else {
-      keep({i->atom, i->exponent + j->exponent});
-      ++i;
-      ++j;
-    }
-  }
+  merge(a, b, [&](const Factor* x, const Factor* y) {
+    Factor factor = product_of(x, y);
+    if (cln::zerop(factor.exponent)) return true;
+    if (is_whole_power_to_expand(factor))
+      whole = whole * power(factor.atom->args[0], factor.exponent);
+    else
+      product.push_back(std::move(factor));
+    return true;
+  });
   return Sum(std::move(product), 1) * whole;
 }
 
@@ -164,22 +162,13 @@ Content content(const Sum& sum) {
       continue;
     }
     Monomial common;  // least exponents; a missing factor counts as exponent 0
-    auto i = result.monomial.begin(), end_i = result.monomial.end();
-    auto j = monomial.begin(), end_j = monomial.end();
-    while (i != end_i || j != end_j) {
-      const int c = i == end_i ? 1 : j == end_j ? -1 : compare(*i->atom, *j->atom);
-      if (c < 0) {
-        if (cln::minusp(i->exponent)) common.push_back(*i);
-        ++i;
-      } else if (c > 0) {
-        if (cln::minusp(j->exponent)) common.push_back(*j);
-        ++j;
-      } else {
-        common.push_back({i->atom, i->exponent < j->exponent ? i->exponent : j->exponent});
-        ++i;
-        ++j;
-      }
-    }
+    merge(result.monomial, monomial, [&](const Factor* x, const Factor* y) {
+      if (x != nullptr && y != nullptr)
+        common.push_back({x->atom, x->exponent < y->exponent ? x->exponent : y->exponent});
+      else if (const Factor& only = x != nullptr ? *x : *y; cln::minusp(only.exponent))
+        common.push_back(only);
+      return true;
+    });
     result.monomial = std::move(common);
   }
   std::erase_if(result.monomial, [](const Factor& factor) { return cln::zerop(factor.exponent); });
