@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -12,6 +11,7 @@
 #include "emit/names.hpp"
 #include "emit/text.hpp"
 #include "error.hpp"
+#include "lists.hpp"
 #include "skeletons/modelica_model_mo.hpp"
 #include "symbolic/functions.hpp"
 
@@ -19,26 +19,18 @@ namespace eomgen::emit {
 namespace {
 
 // Keywords of Modelica, its built-in functions and types, and names of the model.
+// clang-format off
 constexpr std::string_view modelica_words[] = {
-    "algorithm",   "annotation",  "block",         "class",        "connect",
-    "connector",   "constant",    "constrainedby", "der",          "discrete",
-    "each",        "elseif",      "elsewhen",      "encapsulated", "end",
-    "enumeration", "equation",    "expandable",    "extends",      "external",
-    "final",       "flow",        "function",      "import",       "impure",
-    "in",          "initial",     "inner",         "input",        "loop",
-    "model",       "outer",       "output",        "package",      "parameter",
-    "partial",     "protected",   "pure",          "record",       "redeclare",
-    "replaceable", "stream",      "then",          "type",         "when",
-    "within",      "time",        "Real",          "Integer",      "Boolean",
-    "String",      "StateSelect", "Clock",         "abs",          "assert",
-    "ceil",        "cross",       "delay",         "diagonal",     "div",
-    "edge",        "fill",        "floor",         "homotopy",     "identity",
-    "integer",     "matrix",      "max",           "min",          "mod",
-    "ndims",       "noEvent",     "ones",          "pre",          "product",
-    "reinit",      "rem",         "sample",        "scalar",       "semiLinear",
-    "sign",        "size",        "skew",          "smooth",       "spatialDistribution",
-    "sum",         "symmetric",   "terminal",      "terminate",    "transpose",
-    "vector",      "zeros",       "power",         "loaded"};
+    "algorithm", "annotation", "block", "class", "connect", "connector", "constant", "constrainedby", "der",
+    "discrete", "each", "elseif", "elsewhen", "encapsulated", "end", "enumeration", "equation", "expandable",
+    "extends", "external", "final", "flow", "function", "import", "impure", "in", "initial", "inner", "input", "loop",
+    "model", "outer", "output", "package", "parameter", "partial", "protected", "pure", "record", "redeclare",
+    "replaceable", "stream", "then", "type", "when", "within", "time", "Real", "Integer", "Boolean", "String",
+    "StateSelect", "Clock", "abs", "assert", "ceil", "cross", "delay", "diagonal", "div", "edge", "fill", "floor",
+    "homotopy", "identity", "integer", "matrix", "max", "min", "mod", "ndims", "noEvent", "ones", "pre", "product",
+    "reinit", "rem", "sample", "scalar", "semiLinear", "sign", "size", "skew", "smooth", "spatialDistribution", "sum",
+    "symmetric", "terminal", "terminate", "transpose", "vector", "zeros", "power", "loaded"};
+// clang-format on
 
 // Lines of print_statements that the equations of a model state in another way.
 constexpr std::string_view let_prefix = "let ", dropped_line = "dropped";
@@ -231,8 +223,7 @@ std::vector<EmittedFile> emit_modelica(const program::Program& program, const Em
   const std::string name = modelica_name(context.id);
   ModelNames names = model_names(program, context, modelica_words);
   names.time = "time";
-  const auto rhs = std::find_if(program.functions.begin(), program.functions.end(),
-                                [](const program::Function& function) { return function.name == "rhs"; });
+  const auto* const rhs = find_named(program.functions, "rhs");
   const ModelicaEquations stated =
       modelica_equations(print_statements(*rhs, names, context, modelica_language()), names);
   const std::string power =
