@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/samples.hpp"
+
 namespace eomgen::model {
 namespace {
 
@@ -244,8 +246,7 @@ std::array<TypedNode, 3> JointsReader::triad_about(const Value& written, const J
     const std::size_t k = node.index;
     return {own(k), own(k + 1), own(k + 2)};
   }
-  StartSubstitution values(model_, {});
-  const std::array<double, 3> v = values.vector_value(along.node);
+  const std::array<double, 3> v = Samples(model_).vector(along.node);
   if (!(magnitude(v) > 0))
     source_.fail(written.span, fmt::format("an axis of {} has no direction", what), "make it of " + of);
   // The first normal direction uses the body axis that is least aligned with the joint axis.
@@ -287,7 +288,7 @@ void JointsReader::joint_axes(const joints::Joint& kind, std::array<JointEnd, 2>
     StartSubstitution start = at_start(static_cast<std::uint32_t>(model_.constraints.size()));
     const NodeId a = start(ends[0].axis[0].node), b = a == no_node ? no_node : start(ends[1].axis[0].node);
     if (b == no_node) return;  // the initial state is checked instead
-    const std::array<double, 3> u = start.vector_value(a), v = start.vector_value(b);
+    const std::array<double, 3> u = Samples(model_).vector(a), v = Samples(model_).vector(b);
     const std::array<double, 3> across{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
     if (magnitude(across) < parallel * magnitude(u) * magnitude(v)) {
       source_.fail(axis->span, fmt::format("the axes of {} are parallel at the start", what),
@@ -324,7 +325,7 @@ void JointsReader::axis_at_start(const TypedNode& direction, std::array<JointEnd
                                  Span span, const std::string& what) {
   const Context vector{what, on_anything, Shape::vector, std::nullopt, ""};
   const TypedNode placed = fixed_in_frame(direction, 0, start, span);
-  const std::array<double, 3> v = start.vector_value(placed.node);
+  const std::array<double, 3> v = Samples(model_).vector(placed.node);
   if (!(magnitude(v) > 0))
     source_.fail(span, fmt::format("the axis of {} has no direction at the start", what),
                  "give a vector that is not 0 there");

@@ -72,7 +72,7 @@ double Samples::fresh(const Node& node) {
     case Op::time: return some_time;
     case Op::parameter: return value(model_.parameters[node.index].value);
     case Op::function: return node.order == 0 ? value(model_.functions[node.index].expression) : none;
-    case Op::coordinate: return node.order == 0 ? q_[node.index] : none;
+    case Op::coordinate: return node.order == 0 && node.index < q_.size() ? q_[node.index] : none;
     case Op::definition: return value(model_.definitions[node.index].expression);
     case Op::add: return arg(0) + arg(1);
     case Op::subtract: return arg(0) - arg(1);
@@ -131,6 +131,7 @@ std::array<double, 3> Samples::fresh_vector(const Node& node) {
 std::array<double, 3> Samples::covariant(const Node& node) {
   constexpr double step = 1e-5;
   const std::uint32_t coordinate = model_.arena[node.args[0]].index;
+  if (coordinate >= q_.size()) return {none, none, none};
   const double before = q_[coordinate];
   std::array<Vector, 2> at;
   for (std::size_t side = 0; side < 2; ++side) {

@@ -15,6 +15,7 @@ double value_of(Fn fn, double x, double y);
 
 class Samples {
  public:
+  /// Before the first point, expressions of parameters have values and those of coordinates are NaN.
   explicit Samples(const Model& model) : model_(model) {}
 
   /// Moves to the next point: every coordinate within its range (default -1.5 to 1.5). The sequence is the same in

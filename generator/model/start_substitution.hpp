@@ -3,7 +3,6 @@
 // scene (default 0) and t by the start of the run. The result depends on parameters only.
 #pragma once
 
-#include <array>
 #include <map>
 #include <set>
 #include <string>
@@ -21,10 +20,6 @@ class StartSubstitution {
   /// The vector or scalar at the start; no_node if it cannot be determined. obstacle() then contains the reason.
   NodeId operator()(NodeId node);
   const std::string& obstacle() const { return obstacle_; }
-
-  /// Components along E1, E2, E3 of such a vector, or the value of such a scalar, for the parameter values of the file.
-  std::array<double, 3> vector_value(NodeId at_start);
-  double scalar_value(NodeId at_start);
 
  private:
   NodeId replaced(NodeId id);
