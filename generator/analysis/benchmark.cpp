@@ -38,7 +38,8 @@ ReferenceTrial require_reference(const Simulation& simulation, const run::RunReq
       refuse_reference("an input is an expression of t", "write it into the force, or give it as a table");
   }
   // A scene with a fixed step may not be solvable with adaptive steps.
-  run::Integration trial(request, simulation.scene.step > 0 ? "rk4" : "dop853");
+  run::Integration trial(request,
+                         simulation.scene.step > 0 ? run::default_solvers.fixed_step : run::default_solvers.adaptive);
   eom::Options options;
   options.fixed_step = simulation.scene.step;
   options.interrupt = request.interrupt;
@@ -89,7 +90,7 @@ std::vector<double> times_of_errors(const run::Scene& scene, const std::vector<S
 reference::Problem make_problem(const Simulation& simulation, const run::RunRequest& request,
                                 const std::vector<double>& times,
                                 const std::shared_ptr<ReferenceBoundaries>& boundaries) {
-  const run::Integration trial(request, "dop853");
+  const run::Integration trial(request, run::default_solvers.adaptive);
   reference::Problem problem{simulation.program.functions.front(),
                              trial.initial_state(),
                              simulation.scene.parameters,
@@ -127,7 +128,7 @@ pipeline::SimulationRequest simulation_request(const BenchmarkRequest& asked) {
   request.model = asked.model;
   request.scene = asked.scene;
   request.overrides = asked.overrides;
-  request.overrides.solver = "dop853";
+  request.overrides.solver = run::default_solvers.adaptive;
   request.approach = asked.approach;
   request.form = asked.form;
   request.every_solver = true;

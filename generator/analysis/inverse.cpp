@@ -150,7 +150,7 @@ class Prescribed {
     if (scene_.max_step > 0) tolerances.max_step = scene_.max_step;
     tolerances.rtol = scene_.rtol;
     tolerances.atol = scene_.atol;
-    const eom::Result end = eom::integrate("dop853", f, from, states_, t, tolerances);
+    const eom::Result end = eom::integrate(run::default_solvers.adaptive, f, from, states_, t, tolerances);
     states_ = end.x;
     result.outcome = end.outcome;
     result.detail = end.detail;

@@ -75,7 +75,7 @@ class Variation {
  private:
   bool broken(const run::Scene& scene, double speed) const {
     const run::RunRequest request = pipeline::make_run_request(*simulation_.derived, simulation_, scene, false);
-    run::Integration integration(request, "dop853");
+    run::Integration integration(request, run::default_solvers.adaptive);
     const std::vector<double> x = integration.initial_state();
     double largest = 0;
     for (const double v : x) largest = std::max(largest, std::abs(v));
@@ -135,7 +135,7 @@ pipeline::SimulationRequest simulation_request(const StressRequest& asked) {
   request.model = asked.model;
   request.scene = asked.scene;
   request.overrides = asked.overrides;
-  request.overrides.solver = "dop853";
+  request.overrides.solver = run::default_solvers.adaptive;
   request.overrides.step = 0;
   request.with = {"mass"};
   request.every_solver = true;

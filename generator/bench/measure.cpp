@@ -129,7 +129,7 @@ std::vector<Row> measure(const Request& request) {
   double first_step = 16 * scene.step;  // a range around the step of the scene
   if (first_step == 0) {
     // As many steps as an adaptive solver of order 5 takes for 1e-3, so that the step sizes suit the motion.
-    const Row rough = measurement.row("dopri5", 1e-3, 0);
+    const Row rough = measurement.row(run::default_solvers.rough, 1e-3, 0);
     first_step = span / static_cast<double>(std::max<std::size_t>(rough.steps, 10));
   }
   for (const std::string& solver : request.solvers) {

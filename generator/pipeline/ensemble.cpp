@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <eom/automatic.hpp>
 #include <eom/ensemble/integrate.hpp>
 #include <eom/hybrid/balance.hpp>
 #include <eom/hybrid/event_ranges.hpp>
@@ -325,8 +326,9 @@ class Runs {
 }  // namespace
 
 std::string ensemble_solver(const model::Scene& scene, const run::Overrides& overrides) {
-  if (overrides.solver || scene.solver != "auto") return overrides.solver.value_or(scene.solver);
-  return overrides.step || scene.step != model::no_node ? "rk4" : "dop853";
+  if (overrides.solver || scene.solver != eom::Automatic::name) return overrides.solver.value_or(scene.solver);
+  return overrides.step || scene.step != model::no_node ? run::default_solvers.fixed_step
+                                                        : run::default_solvers.adaptive;
 }
 
 std::string ensemble_obstacle(const Simulation& first) {

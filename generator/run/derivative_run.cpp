@@ -31,7 +31,7 @@ void require_derivatives(const RunRequest& request, const RunResult& result) {
 std::string derivative_solver(const std::string& solver) {
   const eom::MethodInfo& method = get_method(solver);
   if (method.needs.required.none()) return solver;
-  return uses_jacobian(method) ? "radau5" : "dop853";
+  return uses_jacobian(method) ? default_solvers.implicit : default_solvers.adaptive;
 }
 
 eom::Options derivative_options(const RunRequest& request, const std::string& solver) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <eom/hybrid/methods.hpp>
+#include <eom/registry.hpp>
 #include <stdexcept>
 
 #include "model/names.hpp"
@@ -40,6 +41,9 @@ const char* with(Feature feature) {
 }
 
 }  // namespace
+
+const DefaultSolvers default_solvers{eom::explicit_rk::Dop853::name, eom::explicit_rk::Dopri5::name,
+                                     eom::explicit_rk::Rk4::name, eom::implicit::Radau5::name};
 
 std::vector<std::string> solver_names() {
   std::vector<std::string> names{eom::Automatic::name};

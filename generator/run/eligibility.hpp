@@ -19,6 +19,15 @@ struct Scene;
 /// `auto`, then the runtime's registry in its order.
 std::vector<std::string> solver_names();
 
+/// The methods that eomgen chooses itself, by their names in the runtime's registry.
+struct DefaultSolvers {
+  const char* adaptive;    // explicit, for small tolerances
+  const char* rough;       // explicit, for large tolerances
+  const char* fixed_step;  // explicit
+  const char* implicit;
+};
+extern const DefaultSolvers default_solvers;
+
 /// The solvers with these names, in the registry's order; without names all of them. Throws Error{stage} for an unknown
 /// name, with the nearest ones.
 std::vector<std::string> select_solvers(const std::string& stage, const std::vector<std::string>& asked);

@@ -88,11 +88,12 @@ std::pair<std::string, SolverReason::Basis> choose_solver(const std::string& ask
     select_solvers("run", {asked});
     if (!get_method(asked).adaptive && scene.step <= 0) {
       throw Error("run", {}, fmt::format("solver '{}' takes steps of a fixed size, and none is given", asked),
-                  "give --step H (or step = H in the scene), or take dop853, which chooses its steps");
+                  fmt::format("give --step H (or step = H in the scene), or take {}, which chooses its steps",
+                              default_solvers.adaptive));
     }
     return {asked, Basis::requested};
   }
-  if (scene.step > 0) return {"rk4", Basis::fixed_step};
+  if (scene.step > 0) return {default_solvers.fixed_step, Basis::fixed_step};
   return {eom::Automatic::name,
           scene.rtol > eom::Automatic::rtol_of_dopri5 ? Basis::loose_tolerance : Basis::tight_tolerance};
 }
@@ -108,7 +109,7 @@ RunResult integrate_scene(const RunRequest& request) {
     result.reason.shorter_steps_from = finer.front().begin;
   const eom::hybrid::RunResult run = run_problem(problem);
   if (request.scene.t1 == request.scene.t0 && result.solver == eom::Automatic::name) {
-    result.solver = "dop853";
+    result.solver = default_solvers.adaptive;
     result.reason = {SolverReason::Basis::empty_span};
   }
   result.outcome = run.outcome;

@@ -107,7 +107,7 @@ class Assessment {
 double stable_step(const run::Scene& scene, const Request& request) {
   run::RunRequest run = request.run(scene);
   run.watch_power = false;
-  run::Integration integration(run, "dop853");
+  run::Integration integration(run, run::default_solvers.adaptive);
   const State x = integration.initial_state();
   const auto n = static_cast<Eigen::Index>(x.size());
   Eigen::MatrixXd J(n, n);

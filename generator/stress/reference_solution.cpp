@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <eom/registry.hpp>
 #include <limits>
 
 namespace eomgen::stress {
@@ -15,8 +16,10 @@ struct TightSolver {
   const char* name;
   double rtol;
 };
-constexpr std::array<TightSolver, 4> tight_solvers{
-    {{"dop853", 1e-14}, {"taylor", 1e-15}, {"radau5", 1e-12}, {"rodas", 1e-11}}};
+constexpr std::array<TightSolver, 4> tight_solvers{{{eom::explicit_rk::Dop853::name, 1e-14},
+                                                    {eom::taylor::Series::name, 1e-15},
+                                                    {eom::implicit::Radau5::name, 1e-12},
+                                                    {eom::implicit::Rodas::name, 1e-11}}};
 
 constexpr double disturbance = 1e-7;   // of the start: large relative to rounding, small relative to nonlinearity
 constexpr double bends_within = 1e-2;  // largest disturbance relative to the distance from a chart singularity

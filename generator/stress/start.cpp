@@ -2,6 +2,7 @@
 #include "stress/start.hpp"
 
 #include <algorithm>
+#include <eom/automatic.hpp>
 #include <eom/constraints/projection.hpp>
 #include <eom/hybrid/constraint_rows.hpp>
 
@@ -15,7 +16,7 @@ class Start {
   Start(const run::Scene& scene, const run::RunRequest& run)
       : run_(run),
         n_(run.code.free.size()),
-        problem_(run::make_problem(run, "auto")),
+        problem_(run::make_problem(run, eom::Automatic::name)),
         rows_(problem_),
         x_(run.state_names.size()) {
     for (std::size_t i = 0; i < n_; ++i) {
