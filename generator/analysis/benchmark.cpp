@@ -125,15 +125,12 @@ std::vector<std::string> solvers_for(const BenchmarkRequest& options, const run:
 
 pipeline::SimulationRequest simulation_request(const BenchmarkRequest& asked) {
   pipeline::SimulationRequest request;
-  request.model = asked.model;
-  request.scene = asked.scene;
-  request.overrides = asked.overrides;
+  request.take(asked);
   request.overrides.solver = run::default_solvers.adaptive;
   request.approach = asked.approach;
   request.form = asked.form;
   request.every_solver = true;
   request.integrate = false;
-  request.seed = asked.seed;
   request.tier = pipeline::Tier::compiled;  // solvers of other libraries call compiled code too
   return request;
 }

@@ -12,16 +12,12 @@
 
 namespace eomgen::analysis {
 
-struct BenchmarkRequest {
-  std::shared_ptr<const model::Model> model;
-  std::string scene = "default";
-  run::Overrides overrides;  // parameters and end time
+struct BenchmarkRequest : pipeline::SceneRequest {
   pipeline::ApproachChoice approach = pipeline::ApproachChoice::automatic;
   pipeline::FormChoice form = std::nullopt;
   std::vector<std::string> solvers;  // empty: all eligible solvers
   double max_seconds = 10;           // time limit of a run, s
   bool other_libraries = true;       // also measure solvers of other libraries
-  std::uint64_t seed = 1;
   std::function<void(const std::string& what)> progress;
   const std::atomic<bool>* interrupt = nullptr;
 };

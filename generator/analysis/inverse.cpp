@@ -13,6 +13,7 @@
 #include "analysis/prescribed_friction.hpp"
 #include "conservation/conserved.hpp"
 #include "derive/formulations/lagrange.hpp"
+#include "lists.hpp"
 #include "model/names.hpp"
 #include "run/methods.hpp"
 #include "symbolic/evaluate.hpp"
@@ -139,8 +140,7 @@ class Prescribed {
   void advance(double t, InverseDynamicsResult& result) {
     const double from = std::exchange(t_, t);
     if (states_.empty()) return;
-    std::vector<symbolic::Ref> rates;
-    for (const system::FirstOrderState& state : system_.states) rates.push_back(state.rate);
+    std::vector<symbolic::Ref> rates = mapped(system_.states, &system::FirstOrderState::rate);
     const auto f = [&](double at, const double* x, double* dx) {
       const std::vector<double> rate = values_at(at, x, rates);
       std::copy(rate.begin(), rate.end(), dx);
@@ -215,12 +215,9 @@ class Prescribed {
 InverseDynamicsResult along_a_run(const InverseRequest& asked) {
   InverseDynamicsResult result;
   pipeline::SimulationRequest request;
-  request.model = asked.model;
-  request.scene = asked.scene;
-  request.overrides = asked.overrides;
+  request.take(asked);
   request.estimate = false;
   request.max_steps = asked.max_steps;
-  request.seed = asked.seed;
   request.prepare = [&](DerivedModel& derived) {
     const std::vector<std::string> labels = chosen_constraints(derived.mechanics, asked.constraints);
     for (system::EquationSystem& system : derived.candidates)
@@ -236,8 +233,7 @@ InverseDynamicsResult along_a_run(const InverseRequest& asked) {
     }
   };
   request.row = [&](double t, std::span<const double> y) {
-    std::vector<double> row;
-    for (const std::size_t i : index) row.push_back(y[i]);
+    std::vector<double> row = mapped(index, [&](std::size_t i) { return y[i]; });
     if (asked.row) asked.row(t, row);
   };
   request.interrupt = asked.interrupt;

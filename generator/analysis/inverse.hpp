@@ -10,13 +10,9 @@
 
 namespace eomgen::analysis {
 
-struct InverseRequest {
-  std::shared_ptr<const model::Model> model;
-  std::string scene = "default";
-  run::Overrides overrides;
+struct InverseRequest : pipeline::SceneRequest {
   std::vector<std::string> constraints;  // by name or label; empty: all of the form q = f(t)
   std::size_t max_steps = 0;
-  std::uint64_t seed = 1;
   /// Called before the first row with the names of its values: coordinates, rates, forces, outputs of the scene.
   std::function<void(const run::Scene& scene, const std::vector<std::string>& columns)> begin;
   std::function<void(double t, std::span<const double> values)> row;

@@ -267,10 +267,7 @@ SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const m
   const bool is_start = !(p.t > p.scene.t0);
   if (!is_start || (contacts == Contacts::held && !std::all_of(all.begin(), all.end(), opens))) {
     SimulationRequest request;
-    request.model = model;
-    request.scene = scene;
-    request.overrides = overrides;
-    request.seed = seed;
+    request.take({model, scene, overrides, seed});
     Reached reached = run_until(command, std::move(request), p.t, p.scene);
     if (is_start)
       state.modes = std::move(reached.modes);

@@ -5,17 +5,14 @@
 
 #include "analysis/steady.hpp"
 #include "linear/equilibria.hpp"
+#include "pipeline/simulate.hpp"
 
 namespace eomgen::analysis {
 
-struct SteadyRequest {
-  std::shared_ptr<const model::Model> model;
-  std::string scene = "default";
-  run::Overrides overrides;
+struct SteadyRequest : pipeline::SceneRequest {
   /// Held outputs and their values; empty: the conserved momenta at the start.
   std::map<std::string, symbolic::Rational> hold;
   std::size_t starts = 300;  // initial guesses
-  std::uint64_t seed = 1;
   std::function<void(double fraction)> progress = {};
   bool second_charts = false;  // also where charts of the model are singular
 };

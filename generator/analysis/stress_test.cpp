@@ -132,15 +132,12 @@ void repeat_constraints(const model::Model& original, std::vector<Row>& rows, Le
 
 pipeline::SimulationRequest simulation_request(const StressRequest& asked) {
   pipeline::SimulationRequest request;
-  request.model = asked.model;
-  request.scene = asked.scene;
-  request.overrides = asked.overrides;
+  request.take(asked);
   request.overrides.solver = run::default_solvers.adaptive;
   request.overrides.step = 0;
   request.with = {"mass"};
   request.every_solver = true;
   request.integrate = false;
-  request.seed = asked.seed;
   return request;
 }
 

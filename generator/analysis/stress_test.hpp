@@ -11,15 +11,11 @@
 
 namespace eomgen::analysis {
 
-struct StressRequest {
-  std::shared_ptr<const model::Model> model;
-  std::string scene = "default";
-  run::Overrides overrides;          // parameters and end time
+struct StressRequest : pipeline::SceneRequest {
   std::vector<std::string> solvers;  // empty: all
   double max_seconds = 60;           // time limit of a run, s; exceeding it counts as reported
   std::size_t max_steps = 20000;     // step limit of a run; exceeding it counts as reported
   bool quick = false;                // few variations of each kind
-  std::uint64_t seed = 1;
   std::function<void(const std::string& what)> progress;
   const std::atomic<bool>* interrupt = nullptr;
 };

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "cli/assignments.hpp"
+#include "cli/locate.hpp"
 #include "pipeline/estimate_cost.hpp"
 #include "pipeline/pipeline.hpp"
 #include "pipeline/tier.hpp"
@@ -24,6 +25,12 @@ run::Overrides overrides_of(const std::string& command, const SceneOptions& opti
   o.solver = options.solver;
   o.outputs = options.outputs;
   return o;
+}
+
+pipeline::SceneRequest scene_request(const std::string& command, const std::string& model, const SceneOptions& options,
+                                     std::uint64_t seed) {
+  const auto read = load_model(model);
+  return {read, options.scene, overrides_of(command, options, *read), seed};
 }
 
 void add_scene(Arguments& app, SceneOptions& options) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/arguments.hpp"
+#include "pipeline/simulate.hpp"
 #include "run/scene.hpp"
 
 namespace eomgen::cli {
@@ -23,6 +24,10 @@ struct SceneOptions {
 
 /// Throws Error{stage `command`} for an invalid assignment, and for units that are not those of the model.
 run::Overrides overrides_of(const std::string& command, const SceneOptions& options, const model::Model& model);
+
+/// The scene of a command, with its model read.
+pipeline::SceneRequest scene_request(const std::string& command, const std::string& model, const SceneOptions& options,
+                                     std::uint64_t seed);
 
 void add_scene(Arguments& app, SceneOptions& options);       // --scene
 void add_values(Arguments& app, SceneOptions& options);      // --set

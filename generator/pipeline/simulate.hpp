@@ -24,7 +24,18 @@ struct RunControl {
   eom::EstimateCost estimate_cost = eom::EstimateCost::bounded;
 };
 
-struct SimulationRequest : RunControl {
+/// A scene of a model, with changes of its values.
+struct SceneRequest {
+  std::shared_ptr<const model::Model> model;
+  std::string scene = "default";
+  run::Overrides overrides;
+  std::uint64_t seed = 1;
+
+  /// Takes the scene of another request over.
+  void take(const SceneRequest& other) { *this = other; }
+};
+
+struct SimulationRequest : RunControl, SceneRequest {
   // Defined in the .cpp file, so that they are compiled only once.
   SimulationRequest();
   SimulationRequest(const SimulationRequest&);
@@ -33,9 +44,6 @@ struct SimulationRequest : RunControl {
   SimulationRequest& operator=(SimulationRequest&&) noexcept;
   ~SimulationRequest();
 
-  std::shared_ptr<const model::Model> model;
-  std::string scene = "default";
-  run::Overrides overrides;
   ApproachChoice approach = ApproachChoice::automatic;
   FormChoice form = std::nullopt;
   bool estimate = true;
@@ -43,7 +51,6 @@ struct SimulationRequest : RunControl {
   std::vector<std::string> with;  // further functions of the code
   bool every_solver = false;      // the code has the functions for every eligible solver
   bool charts = true;             // the run may change to second charts near singularities
-  std::uint64_t seed = 1;
   Tier tier = Tier::automatic;
   /// Called after the derivation: may add outputs to every candidate, and returns those that the code must have.
   std::function<std::vector<std::string>(DerivedModel&)> prepare;
