@@ -18,27 +18,19 @@ std::string setting(const bench::Row& row) {
 Json BenchReport::json() const {
   const run::Scene& scene = found.simulation.scene;
   const bench::Machine machine = bench::describe_machine();
-  Json list = Json::array();
-  for (const bench::Row& row : found.rows) {
-    Json errors = Json::object();
-    for (std::size_t i = 0; i < row.errors.size(); ++i) errors[found.states[i]] = finite_or_null(row.errors[i]);
-    list.push_back({{"solver", row.solver},
-                    {"rtol", row.step > 0 ? Json(nullptr) : Json(row.rtol)},
-                    {"step", row.step > 0 ? Json(row.step) : Json(nullptr)},
-                    {"error", finite_or_null(row.error)},
-                    {"error_along", finite_or_null(row.error_along)},
-                    {"errors", errors},
-                    {"seconds", row.seconds},
-                    {"repeats", row.repeats},
-                    {"steps", row.steps},
-                    {"rejected", row.rejected},
-                    {"rhs_evaluations", row.rhs_evaluations},
-                    {"outcome", row.outcome}});
-  }
+  const auto entry = [&](const bench::Row& row) {
+    Json of_row{{"solver", row.solver},
+                {"rtol", row.step > 0 ? Json(nullptr) : Json(row.rtol)},
+                {"step", row.step > 0 ? Json(row.step) : Json(nullptr)}};
+    of_row.update(EOMGEN_MEMBERS(row, error, error_along));
+    of_row["errors"] = Json::object();
+    for (std::size_t i = 0; i < row.errors.size(); ++i)
+      of_row["errors"][found.states[i]] = finite_or_null(row.errors[i]);
+    of_row.update(EOMGEN_MEMBERS(row, seconds, repeats, steps, rejected, rhs_evaluations, outcome));
+    return of_row;
+  };
   Json end = Json::object();
   for (std::size_t i = 0; i < found.states.size(); ++i) end[found.states[i]] = found.reference.x.back()[i];
-  Json missing = Json::array();
-  for (const auto& [solver, why] : found.left_out) missing.push_back({{"solver", solver}, {"why", why}});
   return {{"format", 1},
           {"model", found.simulation.derived->model.id},
           {"scene", scene.name},
@@ -50,8 +42,11 @@ Json BenchReport::json() const {
             {"steps", found.reference.steps},
             {"seconds", found.reference_seconds},
             {"end", end}}},
-          {"rows", list},
-          {"left_out", missing},
+          {"rows", list_of(found.rows, entry)},
+          {"left_out", list_of(found.left_out,
+                               [](const auto& one) -> Json {
+                                 return {{"solver", one.first}, {"why", one.second}};
+                               })},
           {"machine", {{"processor", machine.processor}, {"cores", machine.cores}, {"compiler", compiler}}},
           {"advice", bench::recommend_solvers(found.rows)}};
 }

@@ -5,9 +5,7 @@
 
 namespace eomgen::cli {
 
-Json to_json(const program::Operations& o) {
-  return {{"add", o.add}, {"mul", o.mul}, {"div", o.div}, {"sqrt", o.sqrt}, {"trig", o.trig}, {"other", o.other}};
-}
+Json to_json(const program::Operations& o) { return EOMGEN_MEMBERS(o, add, mul, div, sqrt, trig, other); }
 
 std::string to_text(const program::Operations& o) {
   std::string text = fmt::format("{} {} ({} add, {} mul)", o.flops(), o.flops() == 1 ? "flop" : "flops", o.add, o.mul);

@@ -239,6 +239,13 @@ void print_readable(std::string_view text, bool output_taken) {
   }
 }
 
+void print_result(bool json, const Json& document, std::string_view text, bool output_taken) {
+  if (json)
+    print_document(document);
+  else
+    print_readable(text, output_taken);
+}
+
 std::string size_text(double bytes) {
   constexpr std::array units{"bytes", "kB", "MB", "GB", "TB"};
   std::size_t unit = 0;

@@ -64,6 +64,9 @@ std::vector<std::string> write_results(const std::string& folder, const std::vec
 /// Prints readable results to standard output, or to standard error if standard output carries a file.
 void print_readable(std::string_view text, bool output_taken);
 
+/// Prints the document if `json`, else the readable text.
+void print_result(bool json, const Json& document, std::string_view text, bool output_taken = false);
+
 /// "1.2 MB"
 std::string size_text(double bytes);
 

@@ -7,10 +7,9 @@
 #include <array>
 #include <cmath>
 
-#include "cli/gradient_report.hpp"
+#include "cli/derivative_report.hpp"
 #include "cli/operations.hpp"
 #include "cli/output.hpp"
-#include "cli/sensitivity_report.hpp"
 #include "run/event_list.hpp"
 
 namespace eomgen::cli {
@@ -21,12 +20,7 @@ bool has_work(const run::RunEvent& event) {
 }
 
 Json to_json(const eom::hybrid::ContactImpulse& impulse) {
-  Json friction = Json::array();
-  for (const double f : impulse.friction) friction.push_back(finite_or_null(f));
-  return {{"contact", impulse.contact},
-          {"normal", finite_or_null(impulse.normal)},
-          {"friction", friction},
-          {"work", finite_or_null(impulse.work)}};
+  return EOMGEN_MEMBERS(impulse, contact, normal, friction, work);
 }
 
 /// "; impulses left 1.2, right 0.8 with friction 0.1", in N s.
@@ -169,8 +163,7 @@ Json RunReport::json() const {
     if (is_final(simulation, name)) final[name] = finite_or_null(value);
   }
   for (const run::Invariant& i : result.invariants) {
-    invariants[i.name] = {{"initial", finite_or_null(i.initial)},
-                          {"max_relative_drift", finite_or_null(i.max_relative_drift)}};
+    invariants[i.name] = EOMGEN_MEMBERS(i, initial, max_relative_drift);
   }
   for (const auto& [e, impacts] : run::list_events(result.events, scene.t0)) {
     events.push_back({{"t", e.t}, {"kind", e.kind}, {"name", e.name}});
@@ -226,11 +219,8 @@ Json RunReport::json() const {
       {"certificate", certificate.summary()}};
   if (result.statistics.jacobians > 0 || run::uses_jacobian(run::get_method(result.solver))) {
     const eom::Statistics& cost = result.statistics;
-    document["implicit"] = {{"jacobians", cost.jacobians},
-                            {"difference_evaluations", cost.difference_evaluations},
-                            {"factorisations", cost.factorisations},
-                            {"newton_iterations", cost.newton_iterations},
-                            {"newton_failures", cost.newton_failures}};
+    document["implicit"] =
+        EOMGEN_MEMBERS(cost, jacobians, difference_evaluations, factorisations, newton_iterations, newton_failures);
   }
   if (derived.model.impacts) document["impacts"] = impact_law(*derived.model.impacts);
   Json written = Json::array();

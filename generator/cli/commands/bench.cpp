@@ -10,7 +10,6 @@
 #include "cli/output.hpp"
 #include "cli/plot_file.hpp"
 #include "cli/shared_options.hpp"
-#include "cli/usage.hpp"
 
 namespace eomgen::cli::bench_command {
 namespace {
@@ -42,15 +41,12 @@ int execute(const Options& options, const CommonOptions& common) {
   require_writable_targets(places, locate_model(options.model), common.json);
   Status status;
   analysis::BenchmarkRequest request;
-  request.model = load_model(options.model);
-  request.scene = options.scene;
-  request.overrides = overrides_of("bench", options, *request.model);
+  request.take(scene_request("bench", options.model, options, common.seed));
   request.approach = pipeline::parse_approach(options.approach);
   request.form = pipeline::parse_form(options.form);
   request.solvers = options.solvers;
   request.max_seconds = options.seconds;
   request.other_libraries = !options.no_libraries;
-  request.seed = common.seed;
   request.progress = [&status](const std::string& what) { status.show(what); };
   request.interrupt = &InterruptGuard::flag();
   const analysis::Benchmark found = analysis::benchmark(request);
@@ -61,11 +57,8 @@ int execute(const Options& options, const CommonOptions& common) {
   const model::Model& model = *request.model;
   if (plot.wanted())
     plot.write(bench::work_precision_diagram(found.rows, model.title.empty() ? model.id : model.title));
-  if (common.json) {
-    print_document(report.json());
-  } else {
-    print_readable(report.text(), is_standard_output(options.csv) || is_standard_output(options.plot));
-  }
+  print_result(common.json, report.json(), report.text(),
+               is_standard_output(options.csv) || is_standard_output(options.plot));
   if (InterruptGuard::flag()) return 3;
   return found.conclusive() ? 0 : 1;
 }

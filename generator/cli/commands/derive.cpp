@@ -51,8 +51,7 @@ Json to_json(const std::vector<print::PrintedFormula>& items, const std::string&
     entry["mathml"] = item.mathml;
     result[item.key].push_back(entry);
   }
-  result["left_out"] = Json::array();
-  for (const work::LeftOut& l : left_out) result["left_out"].push_back({{"what", l.what}, {"why", l.why}});
+  result["left_out"] = cli::to_json(left_out);
   return result;
 }
 
@@ -132,10 +131,9 @@ std::string readable(const std::vector<print::PrintedFormula>& items, const std:
 }
 
 Json to_json(const std::vector<Multiplier>& multipliers) {
-  Json result = Json::array();
-  for (const Multiplier& m : multipliers)
-    result.push_back({{"name", m.name}, {"of", m.constraint}, {"meaning", m.meaning}, {"latex", m.latex}});
-  return result;
+  return list_of(multipliers, [](const Multiplier& m) -> Json {
+    return {{"name", m.name}, {"of", m.constraint}, {"meaning", m.meaning}, {"latex", m.latex}};
+  });
 }
 
 int execute(const Options& options, const CommonOptions& common) {

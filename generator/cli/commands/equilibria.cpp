@@ -17,7 +17,6 @@
 #include "cli/output.hpp"
 #include "cli/shared_options.hpp"
 #include "cli/stage_monitor.hpp"
-#include "cli/usage.hpp"
 #include "pipeline/limits.hpp"
 #include "work.hpp"
 
@@ -36,8 +35,6 @@ Json to_json(const linear::StabilityVerdict& verdict) {
   return verdict.stability == linear::Stability::stable;
 }
 
-Json to_json(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
-
 /// Estimates from the visits of the points how many were not found.
 std::string completeness(const linear::SearchResult& search) {
   const std::optional<double> probability = search.new_point_probability();
@@ -51,50 +48,44 @@ std::string completeness(const linear::SearchResult& search) {
 
 Json points_to_json(const analysis::SteadyMotions& found) {
   const std::vector<std::string>& names = found.problem.flow->names();
-  Json points = Json::array();
-  for (const analysis::SteadyMotion& point : found.points) {
-    Json values = Json::object(), eigenvalues = Json::array();
+  return list_of(found.points, [&](const analysis::SteadyMotion& point) -> Json {
+    Json values = Json::object();
     for (std::size_t i = 0; i + 1 < point.l.z.size(); ++i) values[names[i]] = display_value(point.l.z[i]);
-    for (const linear::Eigenvalue& e : point.l.spectrum.values) eigenvalues.push_back(eigenvalue_json(e));
-    points.push_back({{"kind", linear::name(point.l.kind)},
-                      {"values", values},
-                      {"eigenvalues", eigenvalues},
-                      {"structural_zeros", point.l.structural_zeros},
-                      {"stable", to_json(point.verdict)},
-                      {"reason", point.verdict.reason},
-                      {"family", point.family_dimension},
-                      {"off", point.l.parameter_change}});
-  }
-  return points;
+    return {{"kind", linear::name(point.l.kind)},
+            {"values", values},
+            {"eigenvalues", list_of(point.l.spectrum.values, eigenvalue_json)},
+            {"structural_zeros", point.l.structural_zeros},
+            {"stable", to_json(point.verdict)},
+            {"reason", point.verdict.reason},
+            {"family", point.family_dimension},
+            {"off", point.l.parameter_change}};
+  });
 }
 
 Json to_json(const analysis::SteadyMotions& found, const Options& options) {
-  Json held = Json::array(), second_charts = Json::array();
-  for (const analysis::HeldValue& h : found.held)
-    held.push_back({{"name", h.name}, {"value", h.value}, {"why", h.why}});
-  for (const analysis::SecondChartSearch& search : found.second_charts) {
-    second_charts.push_back({{"of", search.chart.of},
-                             {"own", search.chart.own},
-                             {"second", search.chart.second},
-                             {"where", search.where},
-                             {"points", search.found ? points_to_json(*search.found) : Json::array()},
-                             {"skipped", search.found ? Json(nullptr) : Json(search.skip_reason)}});
-  }
-  return {{"format", 1},
-          {"points", points_to_json(found)},
-          {"second_charts", second_charts},
-          {"open_contacts", found.problem.open_contacts},
-          {"in_contact", found.in_contact},
-          {"held", held},
-          {"held_in_vain", found.search.held_in_vain},
-          {"starts", options.starts},
-          {"converged", found.search.converged},
-          {"new_point_probability", to_json(found.search.new_point_probability())},
-          {"further_members", found.search.further_members},
-          {"refused", found.search.failed_starts},
-          {"singular", found.singular ? Json(found.singular.what) : Json(nullptr)},
-          {"interrupted", found.search.interrupted},
-          {"certificate", found.problem.certificate}};
+  const auto second_chart = [](const analysis::SecondChartSearch& search) {
+    Json entry = EOMGEN_MEMBERS(search.chart, of, own, second);
+    entry["where"] = search.where;
+    entry["points"] = search.found ? points_to_json(*search.found) : Json::array();
+    entry["skipped"] = search.found ? Json(nullptr) : Json(search.skip_reason);
+    return entry;
+  };
+  return {
+      {"format", 1},
+      {"points", points_to_json(found)},
+      {"second_charts", list_of(found.second_charts, second_chart)},
+      {"open_contacts", found.problem.open_contacts},
+      {"in_contact", found.in_contact},
+      {"held", list_of(found.held, [](const analysis::HeldValue& h) { return EOMGEN_MEMBERS(h, name, value, why); })},
+      {"held_in_vain", found.search.held_in_vain},
+      {"starts", options.starts},
+      {"converged", found.search.converged},
+      {"new_point_probability", or_null(found.search.new_point_probability())},
+      {"further_members", found.search.further_members},
+      {"refused", found.search.failed_starts},
+      {"singular", found.singular ? Json(found.singular.what) : Json(nullptr)},
+      {"interrupted", found.search.interrupted},
+      {"certificate", found.problem.certificate}};
 }
 
 std::string text(const analysis::SteadyMotion& point, const linear::Flow& flow) {
@@ -207,11 +198,7 @@ int execute_trim(const Options& options, const CommonOptions& common) {
       analysis::steady_problem("equilibria", model, options.scene, overrides_of("equilibria", options, *model),
                                options.at, common.seed, analysis::Contacts::open);
   const analysis::Trim trim = analysis::trim_inputs(problem, options.trim);
-  if (common.json) {
-    print_document(to_json(problem, trim));
-  } else {
-    fmt::print("{}", text(problem, trim));
-  }
+  print_result(common.json, to_json(problem, trim), text(problem, trim));
   return 0;
 }
 
@@ -220,13 +207,10 @@ int execute(const Options& options, const CommonOptions& common) {
   if (options.at)
     throw Error("equilibria", {}, "--at chooses the state of --trim", "give --trim too, or leave --at out");
   analysis::SteadyRequest request;
-  request.model = load_model(options.model);
-  request.scene = options.scene;
-  request.overrides = overrides_of("equilibria", options, *request.model);
+  request.take(scene_request("equilibria", options.model, options, common.seed));
   for (const auto& [name, quantity] : parse_assignments("equilibria", "--hold", options.hold))
     request.hold[name] = quantity.value;
   request.starts = options.starts;
-  request.seed = common.seed;
   request.second_charts = true;
   bool shown = false;
   if (isatty(STDERR_FILENO) != 0) {
@@ -238,11 +222,7 @@ int execute(const Options& options, const CommonOptions& common) {
   const analysis::SteadyMotions found = analysis::steady_motions(request);
   const work::DeferInterrupt kept;
   if (shown) print_message(fmt::format("\r{:40}\r", ""));
-  if (common.json) {
-    print_document(to_json(found, options));
-  } else {
-    fmt::print("{}", text(found, options));
-  }
+  print_result(common.json, to_json(found, options), text(found, options));
   if (found.search.interrupted) {
     print_interrupted(nullptr);
     return exit_interrupted;

@@ -30,12 +30,9 @@ return result;
 }  // namespace
 
 Json to_document(const import::ImportedModel& model, const Options& options) {
-  Json renamed = Json::array(), left_out = Json::array();
-  for (const import::Renaming& renaming : model.renamings)
-    renamed.push_back({{"kind", renaming.kind}, {"from", renaming.from}, {"to", renaming.to}});
-  for (const import::Finding& finding : model.findings.entries())
-    left_out.push_back(
-        {{"what", finding.what}, {"why", finding.why}, {"count", finding.count}, {"line", finding.first.line}});
+  const auto left_out = [](const import::Finding& finding) -> Json {
+    return {{"what", finding.what}, {"why", finding.why}, {"count", finding.count}, {"line", finding.first.line}};
+  };
   Json document{{"format", 1},
                 {"source", options.file},
                 {"source_format", model.format},
@@ -46,8 +43,8 @@ Json to_document(const import::ImportedModel& model, const Options& options) {
                 {"constraints", model.constraints},
                 {"coordinates", model.coordinates},
                 {"inputs", model.inputs},
-                {"renamed", renamed},
-                {"left_out", left_out},
+                {"renamed", list_of(model.renamings, [](const auto& r) { return EOMGEN_MEMBERS(r, kind, from, to); })},
+                {"left_out", list_of(model.findings.entries(), left_out)},
                 {"left_out_unlisted", model.findings.unlisted()}};
   if (options.out.empty() || is_standard_output(options.out))
     document["model"] = model.text;

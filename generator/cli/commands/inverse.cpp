@@ -16,7 +16,6 @@
 #include "cli/output.hpp"
 #include "cli/shared_options.hpp"
 #include "cli/table_size.hpp"
-#include "cli/usage.hpp"
 #include "pipeline/limits.hpp"
 
 namespace eomgen::cli::inverse_command {
@@ -93,16 +92,13 @@ std::string readable(const Json& found) {
 
 int execute(const Options& options, const CommonOptions& common) {
   analysis::InverseRequest request;
-  request.scene = options.scene;
   request.constraints = options.constraints;
   request.max_steps =
       static_cast<std::size_t>(std::min<std::uint64_t>(options.max_steps, std::numeric_limits<std::size_t>::max()));
-  request.seed = common.seed;
   const InterruptGuard interrupt;
   request.interrupt = &InterruptGuard::flag();
-  request.model = load_model(options.model);
+  request.take(scene_request("inverse", options.model, options, common.seed));
   const model::Model& model = *request.model;
-  request.overrides = overrides_of("inverse", options, model);
   request.overrides.allow_empty_span = true;
   const std::string file = options.out.empty() ? model.id + "_inverse.csv" : options.out;
   require_writable_targets({{"--out", file, ".csv"}}, model.file, common.json);
@@ -115,11 +111,7 @@ int execute(const Options& options, const CommonOptions& common) {
   const analysis::InverseDynamicsResult answer = analysis::inverse_dynamics(request);
   table->finish(answer.outcome);
   const Json found = to_json(answer, *table, file, model, options.scene);
-  if (common.json) {
-    print_document(found);
-  } else {
-    print_readable(readable(found), is_standard_output(file));
-  }
+  print_result(common.json, found, readable(found), is_standard_output(file));
   return answer.outcome == eom::Outcome::done || answer.outcome == eom::Outcome::stopped_by_event ? 0 : 3;
 }
 

@@ -12,7 +12,7 @@
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
 #include "cli/shared_options.hpp"
-#include "cli/usage.hpp"
+#include "lists.hpp"
 
 namespace eomgen::cli::linearize_command {
 namespace {
@@ -29,9 +29,7 @@ struct Answer {
   const analysis::OutputSlopes& outputs;
 
   std::vector<std::string> names(const std::vector<std::size_t>& places) const {
-    std::vector<std::string> result;
-    for (const std::size_t i : places) result.push_back(problem.flow->names()[i]);
-    return result;
+    return mapped(places, [&](std::size_t i) { return problem.flow->names()[i]; });
   }
   std::vector<std::string> states() const { return names(l.symmetry.chart.independent); }
   /// Those of the model. Forces and modes of contacts are internal ones.
@@ -74,9 +72,8 @@ struct Answer {
 Json rows(const linear::Matrix<linear::Precise>& A) {
   Json result = Json::array();
   for (std::size_t i = 0; i < A.rows; ++i) {
-    Json row = Json::array();
-    for (std::size_t j = 0; j < A.cols; ++j) row.push_back(display_value(A(i, j)));
-    result.push_back(row);
+    result.push_back(Json::array());
+    for (std::size_t j = 0; j < A.cols; ++j) result.back().push_back(display_value(A(i, j)));
   }
   return result;
 }
@@ -90,16 +87,13 @@ Json values_of(const analysis::OutputSlopes& outputs) {
 constexpr const char* of_open_contact = "it belongs to a contact that is open";
 
 Json left_out(const analysis::OutputSlopes& outputs, const std::vector<std::string>& open_outputs) {
-  Json list = Json::array();
-  for (const analysis::OutputSlopes::LeftOut& output : outputs.left_out)
-    list.push_back({{"name", output.name}, {"reason", output.reason}});
+  Json list = list_of(outputs.left_out, [](const auto& output) { return EOMGEN_MEMBERS(output, name, reason); });
   for (const std::string& name : open_outputs) list.push_back({{"name", name}, {"reason", of_open_contact}});
   return list;
 }
 
 Json to_json(const Answer& a) {
-  Json eigenvalues = Json::array(), point = Json::object(), moved = Json::object();
-  for (const linear::Eigenvalue& e : a.l.spectrum.values) eigenvalues.push_back(eigenvalue_json(e));
+  Json point = Json::object(), moved = Json::object();
   Json modes = Json::object();
   for (const auto& [contact, mode] : a.problem.modes) modes[contact] = mode;
   for (std::size_t i = 0; i + 1 < a.l.z.size(); ++i) point[a.problem.flow->names()[i]] = display_value(a.l.z[i]);
@@ -118,7 +112,7 @@ Json to_json(const Answer& a) {
           {"C", rows(a.outputs.C)},
           {"D", rows(a.outputs.D)},
           {"outputs_left_out", left_out(a.outputs, a.problem.without_value)},
-          {"eigenvalues", eigenvalues},
+          {"eigenvalues", list_of(a.l.spectrum.values, eigenvalue_json)},
           {"eigenvalues_hold", a.l.spectrum.is_reliable()},
           {"off", a.l.parameter_change},
           {"structural_zeros", a.l.structural_zeros},
@@ -196,11 +190,7 @@ int execute(const Options& options, const CommonOptions& common) {
   const linear::Linearisation l = analysis::linearise_at_state(problem, common.seed);
   const analysis::OutputSlopes outputs = analysis::linearise_outputs(problem, l, options.outputs);
   const Answer answer{problem, l, outputs};
-  if (common.json) {
-    print_document(to_json(answer));
-  } else {
-    fmt::print("{}", text(answer));
-  }
+  print_result(common.json, to_json(answer), text(answer));
   return 0;
 }
 

@@ -18,69 +18,69 @@
 namespace eomgen::cli::list_command {
 namespace {
 
-Json registries() {
-  Json result{{"format", 1}};
-  Json coordinates = Json::array(), formulations = Json::array(), solvers = Json::array(), targets = Json::array();
-  for (const coordinates::CoordinateSystem& system : coordinates::registry()) {
-    Json slots = Json::array();
-    for (const coordinates::Slot& slot : system.slots) slots.push_back(slot.name);
-    coordinates.push_back(
-        {{"name", system.name}, {"title", system.title}, {"slots", slots}, {"singular", system.singular}});
-  }
+constexpr auto entry = [](const auto& item) { return EOMGEN_MEMBERS(item, name, title); };
+
+/// Names of the parts of an entry.
+template <class List>
+Json names(const List& list) {
+  return list_of(list, [](const auto& part) -> Json { return part.name; });
+}
+
+Json coordinate_systems() {
+  Json result = list_of(coordinates::registry(), [](const coordinates::CoordinateSystem& system) -> Json {
+    return {
+        {"name", system.name}, {"title", system.title}, {"slots", names(system.slots)}, {"singular", system.singular}};
+  });
   // Defined by the model itself, so not in that registry.
-  coordinates.push_back({{"name", "custom"},
-                         {"title", "coordinates that a model defines, by x(q) or by q(x)"},
-                         {"slots", Json::array()},
-                         {"singular", ""}});
-  for (const derive::FormulationEntry& formulation : derive::formulations())
-    formulations.push_back({{"name", formulation.name}, {"title", formulation.title}});
-  for (const eom::MethodInfo& method : eom::methods()) {
-    const auto requires_feature = [&](eom::Feature feature) { return method.needs.required.has(feature); };
-    solvers.push_back({{"name", method.name},
-                       {"order", method.order},
-                       {"dense_order", method.dense_order},
-                       {"adaptive", method.adaptive},
-                       {"implicit", run::uses_jacobian(method)},
-                       {"series", requires_feature(eom::Feature::series)},
-                       {"variational", requires_feature(eom::Feature::momenta)},
-                       {"constrained", requires_feature(eom::Feature::constraints)}});
-  }
-  for (const emit::TargetEntry& target : emit::targets())
-    targets.push_back({{"name", target.name}, {"title", target.title}});
-  for (const pipeline::Archive& archive : pipeline::archives())
-    targets.push_back({{"name", archive.name}, {"title", archive.title}});
-  // The document uses the display form instead of a program, so it is not in that registry.
-  targets.push_back({{"name", analysis::latex_document_target},
-                     {"title", "a LaTeX document: both approaches side by side, constraint forces"}});
-  result["coordinates"] = coordinates;
-  Json rotations = Json::array();
-  for (const rotations::Rotation& rotation : rotations::registry()) {
-    Json entries = Json::array();
-    for (const rotations::Entry& entry : rotation.entries) entries.push_back(entry.name);
-    rotations.push_back({{"name", rotation.name},
-                         {"title", rotation.title},
-                         {"family", rotation.family},
-                         {"entries", entries},
-                         {"singular", rotation.singular}});
-  }
-  result["rotations"] = rotations;
-  result["joints"] = Json::array();
-  for (const joints::Joint& joint : joints::registry()) {
-    result["joints"].push_back({{"name", joint.name}, {"title", joint.title}, {"equations", joint.equations.size()}});
-  }
-  result["couplings"] = Json::array();
-  for (const couplings::Coupling& coupling : couplings::registry())
-    result["couplings"].push_back({{"name", coupling.name}, {"title", coupling.title}});
-  result["forces"] = Json::array();
-  for (const forces::Kind& kind : forces::registry()) {
-    Json keys = Json::array();
-    for (const forces::Key& key : kind.keys) keys.push_back(key.name);
-    result["forces"].push_back({{"name", kind.name}, {"title", kind.title}, {"keys", keys}});
-  }
-  result["solvers"] = solvers;
-  result["targets"] = targets;
-  result["formulations"] = formulations;
+  result.push_back({{"name", "custom"},
+                    {"title", "coordinates that a model defines, by x(q) or by q(x)"},
+                    {"slots", Json::array()},
+                    {"singular", ""}});
   return result;
+}
+
+Json solver(const eom::MethodInfo& method) {
+  const auto requires_feature = [&](eom::Feature feature) { return method.needs.required.has(feature); };
+  Json result = EOMGEN_MEMBERS(method, name, order, dense_order, adaptive);
+  result["implicit"] = run::uses_jacobian(method);
+  result["series"] = requires_feature(eom::Feature::series);
+  result["variational"] = requires_feature(eom::Feature::momenta);
+  result["constrained"] = requires_feature(eom::Feature::constraints);
+  return result;
+}
+
+Json targets() {
+  Json result = list_of(emit::targets(), entry);
+  for (const pipeline::Archive& archive : pipeline::archives()) result.push_back(entry(archive));
+  // The document uses the display form instead of a program, so it is not in that registry.
+  result.push_back({{"name", analysis::latex_document_target},
+                    {"title", "a LaTeX document: both approaches side by side, constraint forces"}});
+  return result;
+}
+
+Json registries() {
+  const auto rotation = [](const rotations::Rotation& r) -> Json {
+    return {{"name", r.name},
+            {"title", r.title},
+            {"family", r.family},
+            {"entries", names(r.entries)},
+            {"singular", r.singular}};
+  };
+  const auto joint = [](const joints::Joint& j) -> Json {
+    return {{"name", j.name}, {"title", j.title}, {"equations", j.equations.size()}};
+  };
+  const auto force = [](const forces::Kind& kind) -> Json {
+    return {{"name", kind.name}, {"title", kind.title}, {"keys", names(kind.keys)}};
+  };
+  return {{"format", 1},
+          {"coordinates", coordinate_systems()},
+          {"rotations", list_of(rotations::registry(), rotation)},
+          {"joints", list_of(joints::registry(), joint)},
+          {"couplings", list_of(couplings::registry(), entry)},
+          {"forces", list_of(forces::registry(), force)},
+          {"solvers", list_of(eom::methods(), solver)},
+          {"targets", targets()},
+          {"formulations", list_of(derive::formulations(), entry)}};
 }
 
 int execute(const CommonOptions& common) {

@@ -42,11 +42,8 @@ int execute(const Options& options, const CommonOptions& common) {
                 suggest_choice(options.command, names));
   }
   if (options.folder.empty()) {
-    if (common.json) {
-      print_document(Json{{"format", 1}, {"page", pages.front().name}, {"roff", pages.front().text}});
-    } else {
-      fmt::print("{}", pages.front().text);
-    }
+    print_result(common.json, {{"format", 1}, {"page", pages.front().name}, {"roff", pages.front().text}},
+                 pages.front().text);
     return 0;
   }
   require_folder(options.folder);

@@ -19,7 +19,6 @@
 #include "cli/report/recorded_motion.hpp"
 #include "cli/run_report.hpp"
 #include "cli/shared_options.hpp"
-#include "cli/usage.hpp"
 #include "pipeline/simulate.hpp"
 #include "print/render.hpp"
 
@@ -228,10 +227,7 @@ int execute(const Options& options, const CommonOptions& common) {
   require_writable_targets({{"--out", file, ".html"}}, locate_model(options.model), common.json);
   RecordedMotion recorded;
   pipeline::SimulationRequest request;
-  request.model = load_model(options.model);
-  request.scene = options.scene;
-  request.seed = common.seed;
-  request.overrides = overrides_of("report", options, *request.model);
+  request.take(scene_request("report", options.model, options, common.seed));
   request.rows = rows_of_a_page(*request.model);
   request.with = {"mass"};  // dragging a point uses the mass matrix
   std::optional<analysis::Drawing> drawing;
@@ -293,16 +289,13 @@ int execute(const Options& options, const CommonOptions& common) {
   write_text(file, render_page({title, html.text() + plots.text() + rest.text(), motion, live.script, live.name,
                                 surfaces.script, surfaces.name, live.has_contacts()}));
   const eom::Outcome outcome = simulation.result.outcome;
-  if (common.json) {
-    print_document({{"format", 1},
-                    {"model", model.id},
-                    {"scene", simulation.scene.name},
-                    {"outcome", eom::name(outcome)},
-                    {"file", file}});
-  } else {
-    print_readable(fmt::format("wrote {} (outcome of the run: {})\n", file, eom::name(outcome)),
-                   is_standard_output(file));
-  }
+  print_result(common.json,
+               {{"format", 1},
+                {"model", model.id},
+                {"scene", simulation.scene.name},
+                {"outcome", eom::name(outcome)},
+                {"file", file}},
+               fmt::format("wrote {} (outcome of the run: {})\n", file, eom::name(outcome)), is_standard_output(file));
   return outcome == eom::Outcome::done || outcome == eom::Outcome::stopped_by_event ? 0 : 3;
 }
 

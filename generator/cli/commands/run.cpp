@@ -21,7 +21,6 @@
 #include "cli/run_report.hpp"
 #include "cli/shared_options.hpp"
 #include "cli/table_size.hpp"
-#include "cli/usage.hpp"
 #include "pipeline/estimate_cost.hpp"
 #include "pipeline/limits.hpp"
 #include "pipeline/row_count.hpp"
@@ -141,9 +140,7 @@ int execute(const Options& options, const CommonOptions& common) {
   if (animation.wanted()) places.push_back(animation.target());
   require_writable_targets(places, locate_model(options.model), common.json);
   pipeline::SimulationRequest request;
-  request.model = load_model(options.model);
-  request.scene = options.scene;
-  request.overrides = overrides_of("run", options, *request.model);
+  request.take(scene_request("run", options.model, options, common.seed));
   request.overrides.allow_empty_span = true;
   request.approach = pipeline::parse_approach(options.approach);
   request.form = pipeline::parse_form(options.form);
@@ -157,7 +154,6 @@ int execute(const Options& options, const CommonOptions& common) {
   if (options.gradient.empty() && !options.by.empty())
     throw Error("run", {}, "--by selects what outputs are differentiated by, and there is no gradient",
                 "add --gradient OUTPUTS, or use --sensitivity NAMES");
-  request.seed = common.seed;
   Progress progress;
   if (isatty(STDERR_FILENO) != 0) request.progress = [&progress](double fraction) { progress(fraction); };
   std::optional<InterruptGuard> interrupt;

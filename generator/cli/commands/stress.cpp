@@ -14,7 +14,6 @@
 #include "cli/plot_file.hpp"
 #include "cli/shared_options.hpp"
 #include "cli/stress_plot.hpp"
-#include "cli/usage.hpp"
 #include "pipeline/limits.hpp"
 
 namespace eomgen::cli::stress_command {
@@ -56,24 +55,19 @@ Json of(const stress::Audit& audit) {
 }
 
 Json document(const model::Model& model, const analysis::StressFindings& found) {
-  Json list = Json::array(), without = Json::array();
-  for (const stress::Row& row : found.rows) {
-    list.push_back({{"case", row.test},
-                    {"solver", row.solver},
-                    {"verdict", stress::name(row.verdict)},
-                    {"error", finite_or_null(row.error)},
-                    {"estimate", finite_or_null(row.estimate)},
-                    {"condition", finite_or_null(row.condition)},
-                    {"seconds", row.seconds},
-                    {"outcome", row.outcome},
-                    {"note", row.note}});
-  }
-  for (const auto& [test, why] : found.left_out) without.push_back({{"case", test}, {"reason", why}});
+  const auto entry = [](const stress::Row& row) {
+    Json of_row{{"case", row.test}, {"solver", row.solver}, {"verdict", stress::name(row.verdict)}};
+    of_row.update(EOMGEN_MEMBERS(row, error, estimate, condition, seconds, outcome, note));
+    return of_row;
+  };
   return {{"format", 1},
           {"model", model.id},
           {"scene", found.scene},
-          {"rows", list},
-          {"left_out", without},
+          {"rows", list_of(found.rows, entry)},
+          {"left_out", list_of(found.left_out,
+                               [](const auto& one) -> Json {
+                                 return {{"case", one.first}, {"reason", one.second}};
+                               })},
           {"pass", found.count(Verdict::pass)},
           {"reported", found.count(Verdict::reported)},
           {"undetected", found.count(Verdict::undetected)},
@@ -147,14 +141,11 @@ int execute(const Options& options, const CommonOptions& common) {
   const PlotFile plot(options.plot);
   if (plot.wanted()) require_writable_targets({plot.target()}, locate_model(options.model), common.json);
   analysis::StressRequest request;
-  request.model = load_model(options.model);
-  request.scene = options.scene;
-  request.overrides = overrides_of("stress", options, *request.model);
+  request.take(scene_request("stress", options.model, options, common.seed));
   request.solvers = options.solvers;
   request.max_seconds = options.seconds;
   request.max_steps = options.steps;
   request.quick = options.quick;
-  request.seed = common.seed;
   request.interrupt = &InterruptGuard::flag();
   const bool terminal = isatty(STDERR_FILENO) != 0;
   if (terminal) request.progress = [](const std::string& what) { print_message(fmt::format("\r{:60}\r{}", "", what)); };
@@ -166,11 +157,7 @@ int execute(const Options& options, const CommonOptions& common) {
   const StressPlot verdicts{findings, model.title.empty() ? model.id : model.title};
   if (plot.wanted())
     plot.write([&] { return verdicts.svg(); }, [&](std::size_t columns) { return verdicts.text_plot(columns); });
-  if (common.json) {
-    print_document(found);
-  } else {
-    print_readable(readable(found, findings.solvers), is_standard_output(options.plot));
-  }
+  print_result(common.json, found, readable(found, findings.solvers), is_standard_output(options.plot));
   return InterruptGuard::flag() ? 3 : found["verdict"] == "pass" ? 0 : 1;
 }
 

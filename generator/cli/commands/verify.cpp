@@ -7,7 +7,6 @@
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
 #include "cli/stage_monitor.hpp"
-#include "cli/usage.hpp"
 #include "pipeline/limits.hpp"
 #include "pipeline/verification.hpp"
 
@@ -22,27 +21,21 @@ struct Options {
 };
 
 Json to_json(const verify::Certificate& certificate) {
-  Json formulations = Json::array(), reasons = Json::object(), left_out = Json::array();
-  for (const work::LeftOut& l : certificate.left_out) left_out.push_back({{"what", l.what}, {"why", l.why}});
-  for (const verify::Comparison& c : certificate.comparisons) {
-    formulations.push_back({{"a", c.a},
-                            {"b", c.b},
-                            {"shares_code", c.shares_code},
-                            {"max_relative_difference", c.max_relative_difference},
-                            {"tolerance", c.tolerance},
-                            {"digits_agreed", c.digits_agreed},
-                            {"pass", c.pass}});
-  }
+  Json reasons = Json::object();
   for (const auto& [reason, count] : certificate.rejected) reasons[reason] = count;
   return {{"format", 1},
-          {"formulations", formulations},
+          {"formulations", list_of(certificate.comparisons,
+                                   [](const verify::Comparison& c) {
+                                     return EOMGEN_MEMBERS(c, a, b, shares_code, max_relative_difference, tolerance,
+                                                           digits_agreed, pass);
+                                   })},
           {"points", certificate.points},
           {"digits", certificate.options.digits},
           {"rejected", certificate.rejections()},
           {"rejected_reasons", reasons},
           {"summary", certificate.summary()},
           {"verdict", certificate.verdict()},
-          {"left_out", left_out}};
+          {"left_out", cli::to_json(certificate.left_out)}};
 }
 
 void print_readable(const verify::Certificate& certificate) {

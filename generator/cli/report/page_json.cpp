@@ -6,18 +6,7 @@
 namespace eomgen::cli {
 namespace {
 
-Json bounds(const std::vector<double>& list) {
-  Json result = Json::array();
-  for (const double bound : list) result.push_back(std::isfinite(bound) ? Json(bound) : Json(nullptr));
-  return result;
-}
-
-template <class T, class Write>
-Json list_of(const std::vector<T>& list, Write&& write) {
-  Json result = Json::array();
-  for (const T& entry : list) result.push_back(write(entry));
-  return result;
-}
+Json bounds(const std::vector<double>& list) { return list_of(list, finite_or_null); }
 
 /// Values that an event or a sample sets: entries [place in the state, place in the values of `resets`].
 void add_reset(Json& of, const eom::hybrid::Reset& reset) {
@@ -34,32 +23,28 @@ Json to_json(const eom::StateLayout& layout) {
           {"size", layout.size()}};
 }
 
-Json line(const analysis::DrawnLine& l) { return {{"a", l.a}, {"b", l.b}}; }
+Json line(const analysis::DrawnLine& l) { return EOMGEN_MEMBERS(l, a, b); }
 
 }  // namespace
 
 Json to_json(const analysis::DrawnParts& parts, const model::Model& model, const run::Scene& scene) {
   Json result;
-  result["places"] = list_of(parts.places, [](const analysis::DrawnPlace& p) -> Json {
-    return {{"name", p.name}, {"kind", p.kind}, {"from", or_null(p.from)}, {"at", p.at}};
-  });
-  result["bodies"] = list_of(parts.bodies, [](const analysis::DrawnBody& b) -> Json {
-    return {{"place", b.place}, {"axes", b.axes}, {"mass", b.mass}, {"inertia", b.inertia}};
-  });
+  result["places"] =
+      list_of(parts.places, [](const analysis::DrawnPlace& p) { return EOMGEN_MEMBERS(p, name, kind, from, at); });
+  result["bodies"] =
+      list_of(parts.bodies, [](const analysis::DrawnBody& b) { return EOMGEN_MEMBERS(b, place, axes, mass, inertia); });
   result["dampers"] = list_of(parts.dampers, line);
   result["springs"] = list_of(parts.springs, line);
   result["joints"] = list_of(parts.joints, [](const analysis::DrawnJoint& j) -> Json {
     return {{"name", j.name}, {"at", j.at}, {"of", Json::array({or_null(j.of[0]), or_null(j.of[1])})}};
   });
-  result["contacts"] = list_of(parts.contacts, [](const analysis::DrawnContact& c) -> Json {
-    return {{"name", c.name}, {"of", c.of}, {"at", c.at}, {"tangents", or_null(c.tangents)}, {"foot", c.foot}};
+  result["contacts"] = list_of(
+      parts.contacts, [](const analysis::DrawnContact& c) { return EOMGEN_MEMBERS(c, name, of, at, tangents, foot); });
+  result["couplings"] = list_of(parts.couplings, [](const analysis::DrawnCoupling& c) {
+    return EOMGEN_MEMBERS(c, name, of, axes, ratio, carried);
   });
-  result["couplings"] = list_of(parts.couplings, [](const analysis::DrawnCoupling& c) -> Json {
-    return {{"name", c.name}, {"of", c.of}, {"axes", c.axes}, {"ratio", c.ratio}, {"carried", c.carried}};
-  });
-  result["shapes"] = list_of(parts.shapes, [](const analysis::DrawnShape& s) -> Json {
-    return {{"place", s.place}, {"kind", s.kind}, {"lengths", s.lengths},
-            {"axis", s.axis},   {"at", s.at},     {"faces", s.faces}};
+  result["shapes"] = list_of(parts.shapes, [](const analysis::DrawnShape& s) {
+    return EOMGEN_MEMBERS(s, place, kind, lengths, axis, at, faces);
   });
   std::size_t count = 0;
   result["surfaces"] = list_of(parts.surfaces, [&](const analysis::DrawnSurface& s) -> Json {

@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Output of `run --gradient` as text and JSON.
+// The sensitivities and the gradients of a run as text and in its JSON document.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "cli/json.hpp"
 #include "run/gradient.hpp"
+#include "run/sensitivity.hpp"
 
 namespace eomgen::cli {
+
+std::string text_of(const run::Sensitivities& found, const std::vector<std::string>& states);
+/// {"method", "t", "outcome", "values": {of: {state: value}}, "error_estimate": the same or null, "rhs_evaluations"}
+Json json_of(const run::Sensitivities& found, const std::vector<std::string>& states);
 
 std::string text_of(const run::Gradients& found);
 /// {"method", "t", "outcome", "outputs": {output: value}, "values": {output: {of: derivative}}, "error_estimate": as
