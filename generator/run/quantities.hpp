@@ -9,6 +9,7 @@
 #include "error.hpp"
 #include "model/model.hpp"
 #include "model/units.hpp"
+#include "symbolic/decimal.hpp"
 
 namespace eomgen::run {
 

@@ -145,6 +145,16 @@ class ContactTransitions extends ContactForces {
     return null;
   }
 
+  // The slip of each contact that slides in two directions, at the last rows; null for others.
+  slipsInTwoDirections() {
+    return this.contacts.map((at, j) => (this.mode[j].mode === 1 && at.sticks && this.slips(j).length === 2 ? this.slips(j).map((row) => this.rate(row)) : null));
+  }
+  // The contacts whose slip was small and has reversed since.
+  reversed(before) {
+    const now = this.slipsInTwoDirections(), small = 100 * Math.max(this.negligible(), this.leastSlip, this.tolerances.rtol * this.sizes.speed);
+    return [...before.keys()].filter((j) => before[j] !== null && now[j] !== null && Math.hypot(...before[j]) <= small && before[j][0] * now[j][0] + before[j][1] * now[j][1] < 0);
+  }
+
   // The modes of contacts whose gap speeds are not negative. Only those in `touching` can be closed. `later`: the state of
   // which the forces decide; null: (t, x), with a small acceleration towards the change.
   decide(t, x, u, touching, hint, later) {
@@ -165,19 +175,15 @@ class ContactTransitions extends ContactForces {
       if (moves) state.mode = this.slips(j).length === 1 && this.rate(this.slips(j)[0]) < 0 ? -1 : 1;
       ends ||= slid && !moves && this.slips(j).length === 2;
     });
+    // Friction that reaches its limit as another slip ends is that of the end: all may stick together.
+    if (hint.slips && ends) [hint, later] = [{}, null];
     if (later !== null) {
-      const slip = (j) => this.slips(j).map((row) => this.rate(row)), before = this.contacts.map((_, j) => slip(j));
+      const before = this.slipsInTwoDirections();
       if (!this.readRows(later.t, later.x, this.live.input(later.t))) return -1;
-      let reverses = false;
-      this.contacts.forEach((at, j) => {
-        if (this.mode[j].mode !== 1 || !at.sticks || before[j].length !== 2) return;
-        if (!(slip(j).reduce((sum, w, a) => sum + w * before[j][a], 0) < 0)) return;
-        Object.assign(this.mode[j], {mode: 0, starts: false});
-        reverses = true;
-      });
-      // Friction that reaches its limit as another slip ends is that of the end: all may stick together.
-      if (hint.slips && (ends || reverses)) hint = {};
-      if (reverses || hint.j === undefined) {
+      const reversed = this.reversed(before);
+      for (const j of reversed) Object.assign(this.mode[j], {mode: 0, starts: false});
+      if (reversed.length > 0) {
+        if (hint.slips) hint = {};
         later = null;
         if (!this.readRows(t, x, u)) return -1;
       } else {

@@ -20,7 +20,6 @@
 
 using namespace eomgen;
 using print::Statement;
-using reading::Formula;
 using reading::FormulaKind;
 using symbolic::Symbol;
 using symbolic::SymbolKind;
@@ -47,9 +46,9 @@ Value times(const Value& a, const Value& b) {
   return result;
 }
 
-std::string key(const Formula& f) {
+std::string key(const reading::Formula& f) {
   std::string text = f.kind == FormulaKind::dot ? "dot " + key(f.args[0]) : f.word;
-  for (const Formula& lower : f.lower)
+  for (const reading::Formula& lower : f.lower)
     text += lower.kind == FormulaKind::number ? " " + std::to_string(cln::double_approx(lower.number))
                                               : " q" + std::to_string(lower.symbol.index);
   return text;
@@ -66,7 +65,7 @@ class Reader {
     }
   }
 
-  Value operator()(const Formula& f) {
+  Value operator()(const reading::Formula& f) {
     switch (f.kind) {
       case FormulaKind::number: return number(cln::double_approx(f.number));
       case FormulaKind::symbol: return number(symbol(f.symbol));
@@ -77,7 +76,7 @@ class Reader {
       case FormulaKind::call: return call(f);
       case FormulaKind::product: {
         Value result = number(1);
-        for (const Formula& factor : f.args) {
+        for (const reading::Formula& factor : f.args) {
           if (result.x == std::array<double, 3>{}) return result;  // 0 times an undefined vector
           result = times(result, (*this)(factor));
         }
@@ -85,7 +84,7 @@ class Reader {
       }
       case FormulaKind::sum: {
         Value result = number(0);
-        for (const Formula& term : f.args) result = combined(result, (*this)(term), 1);
+        for (const reading::Formula& term : f.args) result = combined(result, (*this)(term), 1);
         return result;
       }
       case FormulaKind::dot_product: {
@@ -111,7 +110,7 @@ class Reader {
   double at(const Symbol& s) const {
     return s.order == 0 ? q_[s.index] + t_ * (v_[s.index] + t_ * a_[s.index] / 2) : v_[s.index] + t_ * a_[s.index];
   }
-  Value mark(const Formula& f) {
+  Value mark(const reading::Formula& f) {
     if (f.word == "E") {
       Value unit{true, {}};
       unit.x[static_cast<std::size_t>(cln::double_approx(f.lower[0].number)) - 1] = 1;
@@ -122,7 +121,7 @@ class Reader {
     REQUIRE(found != definitions_.end());
     return (*this)(found->second);
   }
-  Value call(const Formula& f) {
+  Value call(const reading::Formula& f) {
     const double x = (*this)(f.args[0]).x[0];
     switch (f.op) {
       case symbolic::Op::sin: return number(std::sin(x));
@@ -135,7 +134,7 @@ class Reader {
       default: FAIL("a function that is not evaluated here"); return {};
     }
   }
-  Value dotted(const Formula& f) {
+  Value dotted(const reading::Formula& f) {
     if (const auto found = definitions_.find(key(f)); found != definitions_.end() && f.order == 1)
       return (*this)(found->second);
     return over_time([&] { return (*this)(f.args[0]); }, f.order);
@@ -152,7 +151,7 @@ class Reader {
     if (order == 1) return times(combined(later, before, -1), number(1 / (2 * step)));
     return times(combined(combined(later, before, 1), now, -2), number(1 / (step * step)));
   }
-  Value partial(const Formula& of, const Symbol& by) {
+  Value partial(const reading::Formula& of, const Symbol& by) {
     shift_ = {by, step};
     const Value above = (*this)(of);
     shift_ = {by, -step};
@@ -162,7 +161,7 @@ class Reader {
   }
 
   std::vector<double> q_, v_, a_, parameters_;
-  std::map<std::string, Formula> definitions_;
+  std::map<std::string, reading::Formula> definitions_;
   double t_ = 0;
   std::optional<std::pair<Symbol, double>> shift_;
 };

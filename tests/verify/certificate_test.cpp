@@ -92,8 +92,8 @@ TEST_CASE("certificate: multipliers, energies, chains, springs and dampers pass,
 
 TEST_CASE("certificate: if all terms cancel, rounding errors do not count as a difference") {
   model::Model free;  // no force at all: the acceleration is 0 by cancellation
-  const Formula mass = parameter(free, "m", 1);
-  const Formula R = coordinate(free, "R"), phi = coordinate(free, "phi"), theta = coordinate(free, "theta");
+  const ModelFormula mass = parameter(free, "m", 1);
+  const ModelFormula R = coordinate(free, "R"), phi = coordinate(free, "phi"), theta = coordinate(free, "theta");
   free.coordinates[0].lower = free.coordinates[1].lower = number(free, 0).id;
   free.coordinates[1].upper = leaf(free, Op::pi, 0).id;
   place(free, "P", spherical(R, phi, theta), mass);

@@ -139,14 +139,14 @@ TEST_CASE("oracle: spring, damper and rod of a pendulum in Cartesian coordinates
 
 TEST_CASE("oracle: variable mass, drag, attraction, torsion, an energy of the extension, diff and ddt in a force") {
   model::Model m;
-  const Formula k = parameter(m, "k", 2);
-  const Formula x = coordinate(m, "x");
-  const Formula zero = number(m, 0);
-  const Formula P = place(m, "P", vector(x, zero, zero), time(m) * k);  // m = k t
+  const ModelFormula k = parameter(m, "k", 2);
+  const ModelFormula x = coordinate(m, "x");
+  const ModelFormula zero = number(m, 0);
+  const ModelFormula P = place(m, "P", vector(x, zero, zero), time(m) * k);  // m = k t
   force(m, "drag", {{"on", P.id}, {"density", k.id}, {"area", k.id}, {"coefficient", k.id}});
   force(m, "central_gravity", {{"GM", k.id}, {"center", (-(k * E(m, 1))).id}});
   force(m, "torsion", {{"angle", (x ^ 2).id}, {"stiffness", k.id}, {"rest", zero.id}, {"coefficient", k.id}});
-  const Formula e = leaf(m, Op::extension, 0);
+  const ModelFormula e = leaf(m, Op::extension, 0);
   force(m, "spring", {{"a", vector(zero, zero, zero).id}, {"b", P.id}, {"length", k.id}, {"energy", (k * (e ^ 4)).id}});
   applied(m, diff(ddt(x ^ 3), rate(x)) * E(m, 1), P);  // 3 x^2
   const Oracle oracle(m, digits);
@@ -187,13 +187,13 @@ TEST_CASE("oracle: dependent parameters are computed, basis vectors are dual to 
   chart.system = "spherical";
   for (std::uint32_t i = 0; i < 3; ++i) chart.entries[i] = leaf(m, Op::coordinate, i).id;
   m.places[1].chart = chart;
-  const Formula P = leaf(m, Op::place, 1, 0, true);
+  const ModelFormula P = leaf(m, Op::place, 1, 0, true);
   for (std::uint32_t i = 0; i < 3; ++i)
     for (std::uint32_t k = 0; k < 3; ++k) {
-      const Formula a = basis(Op::covariant_basis, P, leaf(m, Op::coordinate, i));
-      const Formula g = basis(Op::contravariant_basis, P, leaf(m, Op::coordinate, k));
+      const ModelFormula a = basis(Op::covariant_basis, P, leaf(m, Op::coordinate, i));
+      const ModelFormula g = basis(Op::contravariant_basis, P, leaf(m, Op::coordinate, k));
       CHECK(near(oracle.evaluate(dot(a, g).id, s), i == k ? 1 : 0, agreement, 1));
     }
-  const Formula e_phi = basis(Op::unit_basis, P, leaf(m, Op::coordinate, 1));
+  const ModelFormula e_phi = basis(Op::unit_basis, P, leaf(m, Op::coordinate, 1));
   CHECK(near(oracle.evaluate(dot(e_phi, E(m, 3)).id, s), -cln::sin(s.q[1]), agreement));
 }

@@ -15,58 +15,68 @@ using model::NodeId;
 using model::Op;
 using model::Rational;
 
-struct Formula {
+struct ModelFormula {
   model::Model* model = nullptr;
   NodeId id = model::no_node;
 };
 
-inline bool is_vector(Formula f) { return f.model->arena[f.id].vector; }
+inline bool is_vector(ModelFormula f) { return f.model->arena[f.id].vector; }
 
-inline Formula make(model::Model& m, Node node) {
+inline ModelFormula make(model::Model& m, Node node) {
   m.arena.nodes.push_back(std::move(node));
   return {&m, static_cast<NodeId>(m.arena.nodes.size() - 1)};
 }
-inline Formula make(model::Model& m, Op op, std::vector<Formula> args, bool vector) {
+inline ModelFormula make(model::Model& m, Op op, std::vector<ModelFormula> args, bool vector) {
   Node node;
   node.op = op;
   node.vector = vector;
   for (std::size_t i = 0; i < args.size(); ++i) node.args[i] = args[i].id;
   return make(m, node);
 }
-inline Formula number(model::Model& m, Rational value) {
+inline ModelFormula number(model::Model& m, Rational value) {
   Node node;
   node.value = value;
   return make(m, node);
 }
-inline Formula operator+(Formula a, Formula b) { return make(*a.model, Op::add, {a, b}, is_vector(a)); }
-inline Formula operator-(Formula a, Formula b) { return make(*a.model, Op::subtract, {a, b}, is_vector(a)); }
-inline Formula operator-(Formula a) { return make(*a.model, Op::negate, {a}, is_vector(a)); }
-inline Formula operator*(Formula a, Formula b) {
+inline ModelFormula operator+(ModelFormula a, ModelFormula b) { return make(*a.model, Op::add, {a, b}, is_vector(a)); }
+inline ModelFormula operator-(ModelFormula a, ModelFormula b) {
+  return make(*a.model, Op::subtract, {a, b}, is_vector(a));
+}
+inline ModelFormula operator-(ModelFormula a) { return make(*a.model, Op::negate, {a}, is_vector(a)); }
+inline ModelFormula operator*(ModelFormula a, ModelFormula b) {
   return make(*a.model, Op::multiply, {a, b}, is_vector(a) || is_vector(b));
 }
-inline Formula operator/(Formula a, Formula b) { return make(*a.model, Op::divide, {a, b}, is_vector(a)); }
-inline Formula operator+(Formula a, int b) { return a + number(*a.model, b); }
-inline Formula operator-(Formula a, int b) { return a - number(*a.model, b); }
-inline Formula operator*(int a, Formula b) { return number(*b.model, a) * b; }
-inline Formula operator/(Formula a, int b) { return a / number(*a.model, b); }
-inline Formula operator^(Formula a, int n) { return make(*a.model, Op::power, {a, number(*a.model, n)}, false); }
+inline ModelFormula operator/(ModelFormula a, ModelFormula b) {
+  return make(*a.model, Op::divide, {a, b}, is_vector(a));
+}
+inline ModelFormula operator+(ModelFormula a, int b) { return a + number(*a.model, b); }
+inline ModelFormula operator-(ModelFormula a, int b) { return a - number(*a.model, b); }
+inline ModelFormula operator*(int a, ModelFormula b) { return number(*b.model, a) * b; }
+inline ModelFormula operator/(ModelFormula a, int b) { return a / number(*a.model, b); }
+inline ModelFormula operator^(ModelFormula a, int n) {
+  return make(*a.model, Op::power, {a, number(*a.model, n)}, false);
+}
 
-inline Formula call(Fn fn, Formula x) {
+inline ModelFormula call(Fn fn, ModelFormula x) {
   Node node;
   node.op = Op::call;
   node.fn = fn;
   node.args[0] = x.id;
   return make(*x.model, node);
 }
-inline Formula sin(Formula x) { return call(Fn::sin, x); }
-inline Formula cos(Formula x) { return call(Fn::cos, x); }
-inline Formula ddt(Formula x) { return make(*x.model, Op::total_derivative, {x}, is_vector(x)); }
-inline Formula diff(Formula x, Formula by) { return make(*x.model, Op::partial_derivative, {x, by}, is_vector(x)); }
-inline Formula dot(Formula a, Formula b) { return make(*a.model, Op::dot, {a, b}, false); }
-inline Formula norm(Formula a) { return make(*a.model, Op::norm, {a}, false); }
-inline Formula vector(Formula x, Formula y, Formula z) { return make(*x.model, Op::array, {x, y, z}, true); }
+inline ModelFormula sin(ModelFormula x) { return call(Fn::sin, x); }
+inline ModelFormula cos(ModelFormula x) { return call(Fn::cos, x); }
+inline ModelFormula ddt(ModelFormula x) { return make(*x.model, Op::total_derivative, {x}, is_vector(x)); }
+inline ModelFormula diff(ModelFormula x, ModelFormula by) {
+  return make(*x.model, Op::partial_derivative, {x, by}, is_vector(x));
+}
+inline ModelFormula dot(ModelFormula a, ModelFormula b) { return make(*a.model, Op::dot, {a, b}, false); }
+inline ModelFormula norm(ModelFormula a) { return make(*a.model, Op::norm, {a}, false); }
+inline ModelFormula vector(ModelFormula x, ModelFormula y, ModelFormula z) {
+  return make(*x.model, Op::array, {x, y, z}, true);
+}
 
-inline Formula leaf(model::Model& m, Op op, std::uint32_t index, std::uint8_t order = 0, bool is_vec = false) {
+inline ModelFormula leaf(model::Model& m, Op op, std::uint32_t index, std::uint8_t order = 0, bool is_vec = false) {
   Node node;
   node.op = op;
   node.index = index;
@@ -74,31 +84,31 @@ inline Formula leaf(model::Model& m, Op op, std::uint32_t index, std::uint8_t or
   node.vector = is_vec;
   return make(m, node);
 }
-inline Formula time(model::Model& m) { return leaf(m, Op::time, 0); }
-inline Formula E(model::Model& m, std::uint32_t i) { return leaf(m, Op::fixed_basis, i - 1, 0, true); }
+inline ModelFormula time(model::Model& m) { return leaf(m, Op::time, 0); }
+inline ModelFormula E(model::Model& m, std::uint32_t i) { return leaf(m, Op::fixed_basis, i - 1, 0, true); }
 
-inline Formula parameter(model::Model& m, std::string name, Rational value) {
+inline ModelFormula parameter(model::Model& m, std::string name, Rational value) {
   model::Parameter p;
   p.name = std::move(name);
   p.value = number(m, value).id;
   m.parameters.push_back(std::move(p));
   return leaf(m, Op::parameter, static_cast<std::uint32_t>(m.parameters.size() - 1));
 }
-inline Formula coordinate(model::Model& m, std::string name) {
+inline ModelFormula coordinate(model::Model& m, std::string name) {
   model::Coordinate c;
   c.name = std::move(name);
   m.coordinates.push_back(std::move(c));
   return leaf(m, Op::coordinate, static_cast<std::uint32_t>(m.coordinates.size() - 1));
 }
-inline Formula rate(Formula q) { return leaf(*q.model, Op::coordinate, q.model->arena[q.id].index, 1); }
-inline Formula function(model::Model& m, std::string name, Formula is) {
+inline ModelFormula rate(ModelFormula q) { return leaf(*q.model, Op::coordinate, q.model->arena[q.id].index, 1); }
+inline ModelFormula function(model::Model& m, std::string name, ModelFormula is) {
   model::Function f;
   f.name = std::move(name);
   f.expression = is.id;
   m.functions.push_back(std::move(f));
   return leaf(m, Op::function, static_cast<std::uint32_t>(m.functions.size() - 1));
 }
-inline Formula input(model::Model& m, std::string name) {
+inline ModelFormula input(model::Model& m, std::string name) {
   model::Input u;
   u.name = std::move(name);
   u.default_value = number(m, 0).id;
@@ -106,7 +116,7 @@ inline Formula input(model::Model& m, std::string name) {
   return leaf(m, Op::input, static_cast<std::uint32_t>(m.inputs.size() - 1));
 }
 /// Adds a place and, if `mass` is given, a particle there. Returns the leaf for the position.
-inline Formula place(model::Model& m, std::string name, Formula position, Formula mass = {}) {
+inline ModelFormula place(model::Model& m, std::string name, ModelFormula position, ModelFormula mass = {}) {
   if (m.places.empty()) m.places.emplace_back();  // the origin
   model::Place p;
   p.name = std::move(name);
@@ -116,7 +126,7 @@ inline Formula place(model::Model& m, std::string name, Formula position, Formul
   if (mass.model != nullptr) m.particles.push_back({index, mass.id, {}});
   return leaf(m, Op::place, index, 0, true);
 }
-inline Formula basis(Op op, Formula place, Formula q) {
+inline ModelFormula basis(Op op, ModelFormula place, ModelFormula q) {
   Node node;
   node.op = op;
   node.vector = true;
@@ -135,32 +145,32 @@ inline void force(model::Model& m, std::string kind, std::vector<model::Argument
                       {}});
 }
 using LoadType = model::Effect::LoadType;
-inline model::Effect effect(LoadType load_type, Formula value, Formula at = {}, Formula other = {}) {
+inline model::Effect effect(LoadType load_type, ModelFormula value, ModelFormula at = {}, ModelFormula other = {}) {
   return {load_type, value.id, at.id, other.id, model::no_node, 0};
 }
-inline void gravity(model::Model& m, Formula g) {
+inline void gravity(model::Model& m, ModelFormula g) {
   force(m, "gravity", {{"gravity", g.id}}, {effect(LoadType::acceleration, g)});
 }
-inline void applied(model::Model& m, Formula F, Formula at) {
+inline void applied(model::Model& m, ModelFormula F, ModelFormula at) {
   force(m, "force", {{"force", F.id}, {"on", at.id}}, {effect(LoadType::force, F, at)});
 }
-inline void spring(model::Model& m, Formula a, Formula b, Formula stiffness, Formula length) {
-  const Formula energy = ((norm(a - b) - length) ^ 2) * stiffness / 2;
+inline void spring(model::Model& m, ModelFormula a, ModelFormula b, ModelFormula stiffness, ModelFormula length) {
+  const ModelFormula energy = ((norm(a - b) - length) ^ 2) * stiffness / 2;
   force(m, "spring", {{"a", a.id}, {"b", b.id}, {"stiffness", stiffness.id}, {"length", length.id}},
         {effect(LoadType::potential, energy)});
 }
-inline void damper(model::Model& m, Formula a, Formula b, Formula c) {
+inline void damper(model::Model& m, ModelFormula a, ModelFormula b, ModelFormula c) {
   force(m, "damper", {{"a", a.id}, {"b", b.id}, {"coefficient", c.id}}, {effect(LoadType::damping, c, a, b)});
 }
-inline void generalized(model::Model& m, std::uint32_t coordinate, Formula F) {
+inline void generalized(model::Model& m, std::uint32_t coordinate, ModelFormula F) {
   model::Effect along = effect(LoadType::component, F);
   along.index = coordinate;
   force(m, "generalized", {{m.coordinates[coordinate].name, F.id, coordinate}}, {along});
 }
-inline void holonomic(model::Model& m, std::string name, std::vector<Formula> psi) {
+inline void holonomic(model::Model& m, std::string name, std::vector<ModelFormula> psi) {
   model::Constraint c;
   c.name = std::move(name);
-  for (const Formula& f : psi) c.psi.push_back(f.id);
+  for (const ModelFormula& f : psi) c.psi.push_back(f.id);
   m.constraints.push_back(std::move(c));
 }
 inline void default_scene(model::Model& m) {

@@ -58,7 +58,7 @@ TEST_CASE("points: coordinates stay inside their ranges, away from the ends, and
 
 TEST_CASE("points: undefined states are rejected and counted; too many rejections are an error with the reasons") {
   model::Model m = chain(1);
-  const Formula th = leaf(m, Op::coordinate, 0);
+  const ModelFormula th = leaf(m, Op::coordinate, 0);
   generalized(m, 0, call(Fn::log, th));  // undefined for negative angles
   const Oracle oracle(m, 60);
   StateSampler points(oracle, 5, many);
@@ -106,7 +106,7 @@ TEST_CASE("points: undefined numbers of a scene, an input or a parameter are rep
 
 TEST_CASE("points: states keep a distance from kinks, contradictory constraints have no states") {
   model::Model m = chain(1);
-  const Formula th = leaf(m, Op::coordinate, 0);
+  const ModelFormula th = leaf(m, Op::coordinate, 0);
   generalized(m, 0, call(Fn::abs, th - th));  // always at the kink
   const Oracle oracle(m, 60);
   StateSampler points(oracle, 5, many);
@@ -121,7 +121,7 @@ TEST_CASE("points: states keep a distance from kinks, contradictory constraints 
   CHECK(everywhere.rejected().empty());
 
   model::Model twice = rod_pendulum();
-  const Formula x = leaf(twice, Op::coordinate, 0), y = leaf(twice, Op::coordinate, 1);
+  const ModelFormula x = leaf(twice, Op::coordinate, 0), y = leaf(twice, Op::coordinate, 1);
   holonomic(twice, "again", {2 * ((x ^ 2) + (y ^ 2)) - 2 * (leaf(twice, Op::parameter, 2) ^ 2)});
   const Oracle of_twice(twice, 60);
   StateSampler none(of_twice, 5, many);

@@ -17,15 +17,16 @@ inline std::vector<std::array<double, 2>> Transitions::slips_in_two_directions()
   return slips;
 }
 
-inline bool Transitions::stop_reversed(const std::vector<std::array<double, 2>>& before) {
+inline std::vector<std::size_t> Transitions::reversed(const std::vector<std::array<double, 2>>& before,
+                                                      const Tolerances& tolerances) const {
+  constexpr double small = 100;
   const std::vector<std::array<double, 2>> now = slips_in_two_directions();
-  bool any = false;
+  std::vector<std::size_t> found;
   for (std::size_t j = 0; j < now.size(); ++j) {
-    if (!(before[j][0] * now[j][0] + before[j][1] * now[j][1] < 0)) continue;
-    forces_.states()[j].mode = Mode::closed;
-    any = true;
+    const bool is_small = std::hypot(before[j][0], before[j][1]) <= small * std::max(tolerances.slip, tolerances.error);
+    if (is_small && before[j][0] * now[j][0] + before[j][1] * now[j][1] < 0) found.push_back(j);
   }
-  return any;
+  return found;
 }
 
 inline Transitions::Result Transitions::settle(double t, const double* x, double* u, const Hint& hint,

@@ -100,16 +100,15 @@ class Transitions {
   Result decide(double t, const double* x, double* u, const std::vector<std::size_t>& touching, Hint hint,
                 const Tolerances& tolerances, std::optional<LaterState> later = {}) {
     if (const int code = forces_.evaluate_rows(t, x, u); code != 0) return {Outcome::no_value, code, none};
-    bool ends = begin_states(touching, hint, tolerances);
+    // Friction that reaches its limit as another slip ends is that of the end: all may stick together.
+    if (begin_states(touching, hint, tolerances) && hint.slips) hint = {}, later.reset();
     if (later) {
       const std::vector<std::array<double, 2>> slips = slips_in_two_directions();
       if (const int code = forces_.evaluate_rows(later->t, later->x.data(), later->u.data()); code != 0)
         return {Outcome::no_value, code, none};
-      const bool reverses = stop_reversed(slips);
-      // Friction that reaches its limit as another slip ends is that of the end: all may stick together.
-      ends = ends || reverses;
-      if (hint.slips && ends) hint = {};
-      if (reverses || hint.contact == none) {
+      if (const std::vector<std::size_t> ended = reversed(slips, tolerances); !ended.empty()) {
+        for (const std::size_t j : ended) forces_.states()[j].mode = Mode::closed;
+        if (hint.slips) hint = {};
         later.reset();
         if (const int code = forces_.evaluate_rows(t, x, u); code != 0) return {Outcome::no_value, code, none};
       } else {
@@ -291,10 +290,6 @@ class Transitions {
     }
     return ends;
   }
-  /// Of each contact that slides in two directions; 0 for others.
-  std::vector<std::array<double, 2>> slips_in_two_directions() const;
-  /// Closes contacts whose slip has reversed since; returns whether there are any.
-  bool stop_reversed(const std::vector<std::array<double, 2>>& before);
   double gap_speed_now(std::size_t j) const { return forces_.rate(forces_.contact(j).normal); }
 
   /// One complementarity problem on accelerations. `again`: a contact has just begun to slide, whose coefficient
@@ -305,6 +300,12 @@ class Transitions {
   void favour(ContactProblem& rows, const Vector& size, const Hint& hint) const;
 
  public:
+  /// The slip of each contact that slides in two directions, at the last rows; 0 for others.
+  std::vector<std::array<double, 2>> slips_in_two_directions() const;
+  /// The contacts whose slip was small and has reversed since.
+  std::vector<std::size_t> reversed(const std::vector<std::array<double, 2>>& before,
+                                    const Tolerances& tolerances) const;
+
   /// The friction of the contact of a Hint before the crossing.
   void set_friction_before(const std::array<double, 2>& phi) { friction_before_ = phi; }
   void set_input_count(std::size_t count) { input_count_ = count; }
