@@ -115,7 +115,6 @@ class SolvedContacts extends ContactTransitions {
   laterState(t, x, {j, k}) {
     const at = this.contacts[j], now = this.live.input(t), a = this.solve(t, x, now) ? this.accelerations(t, x, now) : null, length = Math.abs(this.live.t1 - this.live.t0);
     if (a === null) return null;
-    const slips = this.slipsInTwoDirections();
     for (let after = 1e-10 * length; after < 1e-3 * length; after *= 10) {
       const later = {t: t + after, x: Float64Array.from(x)};
       for (let i = 0; i < this.n; ++i) {
@@ -124,7 +123,7 @@ class SolvedContacts extends ContactTransitions {
       }
       if (!this.solve(later.t, later.x, this.live.input(later.t))) return null;
       const value = k === 1 ? this.c[at.static_coefficient] * Math.abs(this.normalForce(j)) - Math.hypot(...this.phi[j]) : (at.unilateral ? 1 : this.mode[j].sign) * this.lambda[j], beyond = -value / this.forceSize[j];
-      if (beyond > 1e-3 && this.reversed(slips).length === 0) return null;  // friction turns round where another slip ends
+      if (beyond > 1e-3) return null;
       if (beyond > 1e-9) return later;
     }
     return null;

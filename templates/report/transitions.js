@@ -145,16 +145,6 @@ class ContactTransitions extends ContactForces {
     return null;
   }
 
-  // The slip of each contact that slides in two directions, at the last rows; null for others.
-  slipsInTwoDirections() {
-    return this.contacts.map((at, j) => (this.mode[j].mode === 1 && at.sticks && this.slips(j).length === 2 ? this.slips(j).map((row) => this.rate(row)) : null));
-  }
-  // The contacts whose slip was small and has reversed since.
-  reversed(before) {
-    const now = this.slipsInTwoDirections(), small = 100 * Math.max(this.negligible(), this.leastSlip, this.tolerances.rtol * this.sizes.speed);
-    return [...before.keys()].filter((j) => before[j] !== null && now[j] !== null && Math.hypot(...before[j]) <= small && before[j][0] * now[j][0] + before[j][1] * now[j][1] < 0);
-  }
-
   // The modes of contacts whose gap speeds are not negative. Only those in `touching` can be closed. `later`: the state of
   // which the forces decide; null: (t, x), with a small acceleration towards the change.
   decide(t, x, u, touching, hint, later) {
@@ -178,17 +168,8 @@ class ContactTransitions extends ContactForces {
     // Friction that reaches its limit as another slip ends is that of the end: all may stick together.
     if (hint.slips && ends) [hint, later] = [{}, null];
     if (later !== null) {
-      const before = this.slipsInTwoDirections();
-      if (!this.readRows(later.t, later.x, this.live.input(later.t))) return -1;
-      const reversed = this.reversed(before);
-      for (const j of reversed) Object.assign(this.mode[j], {mode: 0, starts: false});
-      if (reversed.length > 0) {
-        if (hint.slips) hint = {};
-        later = null;
-        if (!this.readRows(t, x, u)) return -1;
-      } else {
-        ({t, x} = later);
-      }
+      ({t, x} = later);
+      if (!this.readRows(t, x, this.live.input(t))) return -1;
     }
     const broken = this.contacts.map((_, j) => Boolean(hint.slips) && hint.j === j);
     for (let round = 0; round <= this.contacts.length; ++round) {

@@ -7,28 +7,6 @@
 
 namespace eom::contacts {
 
-inline std::vector<std::array<double, 2>> Transitions::slips_in_two_directions() const {
-  std::vector<std::array<double, 2>> slips(forces_.set().contacts.size(), {0, 0});
-  for (std::size_t j = 0; j < slips.size(); ++j) {
-    const std::vector<Row>& rows = forces_.contact(j).slip;
-    if (std::as_const(forces_).states()[j].mode == Mode::sliding && rows.size() == 2 && forces_.contact(j).sticks)
-      slips[j] = {forces_.rate(rows[0]), forces_.rate(rows[1])};
-  }
-  return slips;
-}
-
-inline std::vector<std::size_t> Transitions::reversed(const std::vector<std::array<double, 2>>& before,
-                                                      const Tolerances& tolerances) const {
-  constexpr double small = 100;
-  const std::vector<std::array<double, 2>> now = slips_in_two_directions();
-  std::vector<std::size_t> found;
-  for (std::size_t j = 0; j < now.size(); ++j) {
-    const bool is_small = std::hypot(before[j][0], before[j][1]) <= small * std::max(tolerances.slip, tolerances.error);
-    if (is_small && before[j][0] * now[j][0] + before[j][1] * now[j][1] < 0) found.push_back(j);
-  }
-  return found;
-}
-
 inline Transitions::Result Transitions::settle(double t, const double* x, double* u, const Hint& hint,
                                                std::vector<bool>& broken, bool& again) {
   std::vector<double> inputs(u, u + input_count_);

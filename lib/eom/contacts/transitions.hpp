@@ -103,17 +103,8 @@ class Transitions {
     // Friction that reaches its limit as another slip ends is that of the end: all may stick together.
     if (begin_states(touching, hint, tolerances) && hint.slips) hint = {}, later.reset();
     if (later) {
-      const std::vector<std::array<double, 2>> slips = slips_in_two_directions();
-      if (const int code = forces_.evaluate_rows(later->t, later->x.data(), later->u.data()); code != 0)
-        return {Outcome::no_value, code, none};
-      if (const std::vector<std::size_t> ended = reversed(slips, tolerances); !ended.empty()) {
-        for (const std::size_t j : ended) forces_.states()[j].mode = Mode::closed;
-        if (hint.slips) hint = {};
-        later.reset();
-        if (const int code = forces_.evaluate_rows(t, x, u); code != 0) return {Outcome::no_value, code, none};
-      } else {
-        t = later->t, x = later->x.data(), u = later->u.data();
-      }
+      t = later->t, x = later->x.data(), u = later->u.data();
+      if (const int code = forces_.evaluate_rows(t, x, u); code != 0) return {Outcome::no_value, code, none};
     }
     favours_ = !later;
     std::vector<bool> broken(forces_.set().contacts.size(), false);
@@ -300,12 +291,6 @@ class Transitions {
   void favour(ContactProblem& rows, const Vector& size, const Hint& hint) const;
 
  public:
-  /// The slip of each contact that slides in two directions, at the last rows; 0 for others.
-  std::vector<std::array<double, 2>> slips_in_two_directions() const;
-  /// The contacts whose slip was small and has reversed since.
-  std::vector<std::size_t> reversed(const std::vector<std::array<double, 2>>& before,
-                                    const Tolerances& tolerances) const;
-
   /// The friction of the contact of a Hint before the crossing.
   void set_friction_before(const std::array<double, 2>& phi) { friction_before_ = phi; }
   void set_input_count(std::size_t count) { input_count_ = count; }

@@ -99,7 +99,6 @@ inline std::optional<contacts::LaterState> SolvedContacts::later_state(double t,
   const contacts::Description& at = forces_.contact(j);
   contacts::ContactForces::Vector qddot;
   if (forces_.evaluate_accelerations(t, x.data(), model_.inputs_without_contacts(t), qddot) != 0) return std::nullopt;
-  const std::vector<std::array<double, 2>> slips = transitions_.slips_in_two_directions();
   const double length = std::abs(problem_.t1 - problem_.t0);
   for (double after = 1e-10 * length; after < 1e-3 * length; after *= 10) {
     contacts::LaterState later{t + after, {x.begin(), x.end()}, {}};
@@ -114,8 +113,7 @@ inline std::optional<contacts::LaterState> SolvedContacts::later_state(double t,
                          : at.unilateral                    ? forces_.lambda(j)
                                                             : sign(j) * forces_.lambda(j);
     const double beyond = -value / forces_.force_size(j);
-    // Friction turns round where another slip ends: the state shows only that.
-    if (beyond > far && transitions_.reversed(slips, thresholds_.tolerances()).empty()) return std::nullopt;
+    if (beyond > far) return std::nullopt;
     if (beyond > clear) return later;
   }
   return std::nullopt;
