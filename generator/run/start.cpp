@@ -309,32 +309,22 @@ class StartSolver {
     return true;
   }
 
-  /// Whether the mass matrix has a row of this coordinate.
-  bool has_inertia(std::size_t i) const {
-    for (std::size_t k = 0; k < n_; ++k)
-      if (!s_.dag->is_zero(s_.M[i * n_ + k])) return true;
-    return false;
-  }
-
   /// If several choices satisfy the constraints (as for rolling without a given spin about the normal), solves for the
-  /// unknowns that the constraints depend on most strongly; coordinates without inertia come first. The others stay 0
-  /// or keep their guess; this is reported.
+  /// unknowns that the constraints depend on most strongly. The others stay 0 or keep their guess; this is reported.
   void choose(std::uint8_t order, const std::vector<std::size_t>& free) {
     VectorXd residual;
     MatrixXd A;
     rows_.linearise(order, residual, A);
     if (free.empty() || !A.allFinite()) return;
     MatrixXd columns(A.rows(), static_cast<Eigen::Index>(free.size()));
-    std::vector<Selection> selection;
+    std::vector<bool> first;
     for (std::size_t i = 0; i < free.size(); ++i) {
       columns.col(static_cast<Eigen::Index>(i)) = A.col(static_cast<Eigen::Index>(free[i]));
-      selection.push_back(may_move({s_.free[free[i]], order}) ? Selection::named
-                          : has_inertia(free[i])              ? Selection::other
-                                                              : Selection::followed);
+      first.push_back(may_move({s_.free[free[i]], order}));
     }
     std::vector<std::size_t> chosen;
     std::string open;
-    const std::vector<bool> felt = select_most_sensitive(columns, selection, start_rank_tolerance);
+    const std::vector<bool> felt = select_most_sensitive(columns, first, start_rank_tolerance);
     for (std::size_t i = 0; i < free.size(); ++i) {
       const StartProblem::Key key{s_.free[free[i]], order};
       if (felt[i])

@@ -20,15 +20,15 @@ bool keep_determined(const MatrixXd& columns, Index rank, double tolerance, Eige
   return any;
 }
 
-std::vector<bool> select_most_sensitive(MatrixXd columns, const std::vector<Selection>& selection, double tolerance) {
-  std::vector<bool> taken(selection.size(), false);
+std::vector<bool> select_most_sensitive(MatrixXd columns, const std::vector<bool>& first, double tolerance) {
+  std::vector<bool> taken(first.size(), false);
   const double least = tolerance * columns.norm();
-  for (const Selection now : {Selection::named, Selection::followed, Selection::other}) {
+  for (const bool named : {true, false}) {
     for (;;) {  // Gram-Schmidt with the longest remaining column each time
       Index longest = -1;
       for (Index i = 0; i < columns.cols(); ++i) {
         const auto k = static_cast<std::size_t>(i);
-        if (taken[k] || selection[k] != now || !(columns.col(i).norm() > least)) continue;
+        if (taken[k] || first[k] != named || !(columns.col(i).norm() > least)) continue;
         if (longest < 0 || columns.col(i).norm() > columns.col(longest).norm() * (1 + tolerance)) longest = i;
       }
       if (longest < 0) break;

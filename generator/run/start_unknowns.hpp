@@ -12,12 +12,8 @@ namespace eomgen::run {
 /// 0. Returns false if there are none. `rank`: of the columns.
 bool keep_determined(const Eigen::MatrixXd& columns, Eigen::Index rank, double tolerance, Eigen::VectorXd& move);
 
-/// The unknowns in the order in which they are selected.
-enum class Selection { named, followed, other };  // by the scene; coordinates without inertia; all others
-
-/// Selects as many unknowns as the constraints can determine, in the order of `selection`; of equal ones those with the
-/// largest derivatives outside the span of the selected columns.
-std::vector<bool> select_most_sensitive(Eigen::MatrixXd columns, const std::vector<Selection>& selection,
-                                        double tolerance);
+/// Selects as many unknowns as the constraints can determine: first those in `first`, then those with the largest
+/// derivatives outside the span of the selected columns.
+std::vector<bool> select_most_sensitive(Eigen::MatrixXd columns, const std::vector<bool>& first, double tolerance);
 
 }  // namespace eomgen::run
