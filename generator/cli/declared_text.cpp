@@ -8,18 +8,12 @@
 #include <kainjow/mustache.hpp>
 #include <stdexcept>
 
+#include "emit/template_data.hpp"
+
 namespace eomgen::cli {
 namespace {
 
 using kainjow::mustache::data;
-
-/// An object of the values that are not empty.
-data object(const std::vector<std::pair<std::string, std::string>>& values) {
-  data result{data::type::object};
-  for (const auto& [key, value] : values)
-    if (!value.empty()) result.set(key, value);
-  return result;
-}
 
 std::string joined(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, " ")); }
 
@@ -27,16 +21,16 @@ data described(const DeclaredOption& option) {
   data flags{data::type::list};
   for (const std::string& flag : option.flags) {
     const bool is_long = flag.starts_with("--");
-    flags << object({{"flag", flag},
-                     {"more", &flag != &option.flags.back() ? "true" : ""},
-                     {is_long ? "long" : "short", flag.substr(is_long ? 2 : 1)}});
+    flags << emit::template_object({{"flag", flag},
+                                    {"more", &flag != &option.flags.back() ? "true" : ""},
+                                    {is_long ? "long" : "short", flag.substr(is_long ? 2 : 1)}});
   }
-  data result = object({{"argument", option.argument},
-                        {"help", option.help},
-                        {"default", option.default_value},
-                        {"values", joined(option.allowed_values)},
-                        {"takes_list", option.takes_list ? "true" : ""},
-                        {"has_flags", option.flags.empty() ? "" : "true"}});
+  data result = emit::template_object({{"argument", option.argument},
+                                       {"help", option.help},
+                                       {"default", option.default_value},
+                                       {"values", joined(option.allowed_values)},
+                                       {"takes_list", option.takes_list ? "true" : ""},
+                                       {"has_flags", option.flags.empty() ? "" : "true"}});
   result.set("flags", flags);
   return result;
 }
@@ -47,10 +41,10 @@ data described(const DeclaredCommand& command) {
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   data options{data::type::list};
   for (const DeclaredOption& option : command.options) options << described(option);
-  data result = object({{"name", command.name},
-                        {"upper_name", upper},
-                        {"summary", command.summary},
-                        {"all_flags", joined(command.flags())}});
+  data result = emit::template_object({{"name", command.name},
+                                       {"upper_name", upper},
+                                       {"summary", command.summary},
+                                       {"all_flags", joined(command.flags())}});
   result.set("options", options);
   return result;
 }
@@ -59,7 +53,8 @@ data described(const DeclaredCommand& command) {
 
 std::string render_declared(const char* text_template, const Declaration& declared,
                             const std::function<std::string(const std::string&)>& escape, const std::string& selected) {
-  data all = object({{"version", EOMGEN_VERSION}, {"names", joined(declared.names())}}), list{data::type::list};
+  data all = emit::template_object({{"version", EOMGEN_VERSION}, {"names", joined(declared.names())}}),
+       list{data::type::list};
   const std::vector<DeclaredCommand> commands = declared.commands();
   for (const DeclaredCommand& command : commands) {
     data entry = described(command);

@@ -4,7 +4,9 @@
 // functions.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace eomgen::run {
@@ -15,6 +17,10 @@ struct Slopes {
 };
 
 inline constexpr std::size_t difference_distances = 4;
+
+/// Offsets in units of h, and weights of the derivative to order 4, times h.
+inline constexpr std::array<std::pair<double, double>, 4> order_four{
+    {{2, -1.0 / 12}, {-2, 1.0 / 12}, {1, 8.0 / 12}, {-1, -8.0 / 12}}};
 
 /// The offsets at which values are needed: h, -h, h/2, -h/2, ...
 std::vector<double> difference_offsets(double h);

@@ -139,7 +139,8 @@ std::optional<SlipBound> bound_of_slip(VariationalEquations& in, const eom::Cros
     bound.contact = function / values;
     const contacts::Description& contact = in.problem.code->contact_set.contacts[bound.contact];
     if (!contact.sticks || contact.slip.size() != 2 || function % values != 1) return std::nullopt;
-    bound.ends = in.context.solved_contacts->save().states[bound.contact].mode != contacts::Mode::closed;
+    const contacts::ContactForces& forces = *in.context.model.contact_forces();
+    bound.ends = forces.states()[bound.contact].mode != contacts::Mode::closed;
     if (bound.ends) bound.along = slip_of(in, bound.contact, t, x);
     return bound;
   }
@@ -153,14 +154,21 @@ std::optional<SlipBound> bound_of_slip(VariationalEquations& in, const eom::Cros
   return bound;
 }
 
+int evaluate_contact_rows(VariationalEquations& in, double t, const double* x) {
+  eom::hybrid::Model& model = in.context.model;
+  model.forget_contact_forces();
+  return model.contact_forces()->evaluate_rows(t, x, model.inputs_without_contacts(t));
+}
+
+std::array<double, 2> slip_at_rows(const contacts::ContactForces& forces, std::size_t j) {
+  const std::vector<contacts::Row>& rows = forces.contact(j).slip;
+  return {forces.rate(rows[0]), forces.rate(rows[1])};
+}
+
 std::array<double, 2> slip_of(VariationalEquations& in, std::size_t contact, double t, const std::vector<double>& x) {
   if (in.context.solved_contacts) {
-    in.context.model.forget_contact_forces();
-    contacts::ContactForces& forces = *in.context.model.contact_forces();
-    const std::vector<contacts::Row>& rows = forces.contact(contact).slip;
-    const bool known = forces.evaluate_rows(t, x.data(), in.context.model.inputs_without_contacts(t)) == 0;
-    return known ? std::array<double, 2>{forces.rate(rows[0]), forces.rate(rows[1])}
-                 : std::array<double, 2>{std::nan(""), std::nan("")};
+    if (evaluate_contact_rows(in, t, x.data()) != 0) return {std::nan(""), std::nan("")};
+    return slip_at_rows(*in.context.model.contact_forces(), contact);
   }
   const std::vector<std::size_t>& places = in.problem.contacts[contact].slip;
   std::vector<double> y(in.problem.code->output_names.size());

@@ -48,6 +48,11 @@ std::optional<SlipBound> bound_of_slip(VariationalEquations& in, const eom::Cros
 /// The slip of a contact with two directions.
 std::array<double, 2> slip_of(VariationalEquations& in, std::size_t contact, double t, const std::vector<double>& x);
 
+/// Evaluates the rows of contacts whose forces are solved for. Returns a code.
+int evaluate_contact_rows(VariationalEquations& in, double t, const double* x);
+/// The slip in two directions of contact j at the last rows.
+std::array<double, 2> slip_at_rows(const eom::contacts::ContactForces& forces, std::size_t j);
+
 /// A change of a contact whose forces the motion does not determine: slip of feet that begins at the same time, or a
 /// contact that opens. The forces are some within their laws, and no smooth functions of the state. In the new modes
 /// they are determined, and the change begins where its acceleration is 0 with static friction.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The events of a run as a report lists them. A contact that bounces to rest has infinitely many impacts in a finite
-// time, of which a run makes as many as its tolerances resolve: the list sums up short bounces, so that it does not
-// depend on tolerances. In: all events. Out: the list.
+// time, of which a run makes as many as its tolerances resolve: the list sums up short bounces. In: all events. Out:
+// the list.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,8 @@
 
 namespace eomgen::run {
 
-/// Bounces of a contact that are shorter than this share of its longest flight are not listed one by one.
+/// Bounces of a contact that are shorter than this share of the longest time from an impact, an opening or the start to
+/// its next impact are not listed one by one.
 inline constexpr double short_bounce = 1e-3;
 
 struct ListedEvent {

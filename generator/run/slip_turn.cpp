@@ -6,6 +6,9 @@
 #include <optional>
 #include <utility>
 
+#include "run/central_differences.hpp"
+#include "run/contact_changes.hpp"
+
 namespace eomgen::run {
 namespace {
 
@@ -16,17 +19,6 @@ bool slips_in_two_directions(const contacts::ContactForces& forces, std::size_t 
   return at.slip.size() == 2 && at.sticks && at.width == contacts::none && forces.has_friction(j);
 }
 
-int evaluate_rows(VariationalEquations& in, double t, const double* x) {
-  eom::hybrid::Model& model = in.context.model;
-  model.forget_contact_forces();
-  return in.context.model.contact_forces()->evaluate_rows(t, x, model.inputs_without_contacts(t));
-}
-
-std::array<double, 2> slip_now(const contacts::ContactForces& forces, std::size_t j) {
-  const std::vector<contacts::Row>& rows = forces.contact(j).slip;
-  return {forces.rate(rows[0]), forces.rate(rows[1])};
-}
-
 }  // namespace
 
 SlipTurn::SlipTurn(VariationalEquations& own, double t, const double* x) : own_(own) {
@@ -34,9 +26,9 @@ SlipTurn::SlipTurn(VariationalEquations& own, double t, const double* x) : own_(
   if (forces == nullptr) return;
   bool any = false;
   for (std::size_t j = 0; j < forces->set().contacts.size(); ++j) any = any || slips_in_two_directions(*forces, j);
-  if (!any || evaluate_rows(own, t, x) != 0) return;
+  if (!any || evaluate_contact_rows(own, t, x) != 0) return;
   for (std::size_t j = 0; j < forces->set().contacts.size(); ++j)
-    if (slips_in_two_directions(*forces, j)) contacts_.push_back({j, slip_now(*forces, j), forces->direction(j)});
+    if (slips_in_two_directions(*forces, j)) contacts_.push_back({j, slip_at_rows(*forces, j), forces->direction(j)});
   hold(own);
 }
 
@@ -66,12 +58,11 @@ void SlipTurn::prescribe(VariationalEquations& in, const std::vector<double>& an
   in.context.model.forget_contact_forces();
 }
 
-int SlipTurn::add_slips(const SlipTurn& of, VariationalEquations& in, double t, const double* x, double weight,
-                        Slips& sum) {
-  if (of.contacts_.empty()) return 0;
-  if (const int code = evaluate_rows(in, t, x); code != 0) return code;
-  for (std::size_t k = 0; k < of.contacts_.size(); ++k) {
-    const std::array<double, 2> w = slip_now(*in.context.model.contact_forces(), of.contacts_[k].place);
+int SlipTurn::add_slips(VariationalEquations& in, double t, const double* x, double weight, Slips& sum) const {
+  if (contacts_.empty()) return 0;
+  if (const int code = evaluate_contact_rows(in, t, x); code != 0) return code;
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    const std::array<double, 2> w = slip_at_rows(*in.context.model.contact_forces(), contacts_[k].place);
     for (std::size_t a = 0; a < 2; ++a) sum[k][a] += weight * w[a];
   }
   return 0;
@@ -91,8 +82,6 @@ int SlipTurn::add_turn(double t, const double* x, const Slips& rates, double* sl
   }
   if (!(fastest > 0)) return 0;
   constexpr double widest = 1e-3;  // angle
-  constexpr std::array<std::pair<double, double>, 4> order_four{
-      {{2, -1.0 / 12}, {-2, 1.0 / 12}, {1, 8.0 / 12}, {-1, -8.0 / 12}}};
   const double h = widest / fastest;
   std::vector<double> angles(contacts_.size()), f(own_.problem.states());
   int code = 0;

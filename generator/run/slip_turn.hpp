@@ -24,13 +24,11 @@ class SlipTurn {
   SlipTurn& operator=(const SlipTurn&) = delete;
   ~SlipTurn();
 
-  /// Whether no contact slips in two directions.
-  bool empty() const { return contacts_.empty(); }
   /// Fixes the directions of the same contacts in other equations, too.
   void hold(VariationalEquations& in);
   /// Adds weight times the slips at a state to `sum`. Returns a code.
-  static int add_slips(const SlipTurn& of, VariationalEquations& in, double t, const double* x, double weight,
-                       Slips& sum);
+  int add_slips(VariationalEquations& in, double t, const double* x, double weight, Slips& sum) const;
+  /// A sum to begin with.
   Slips zero() const { return Slips(contacts_.size()); }
   /// Adds the derivative of the right-hand side at (t, x) by the turn that the slips with these derivatives make.
   /// Returns a code.

@@ -5,6 +5,7 @@
 #include <array>
 #include <utility>
 
+#include "run/central_differences.hpp"
 #include "run/slip_turn.hpp"
 #include "run/variational_jumps.hpp"
 
@@ -13,9 +14,6 @@ namespace {
 
 constexpr double relative_difference = 1e-3;  // of the state
 
-/// Offsets in units of h, in the order of difference_offsets, and weights of the derivative to order 4, times h.
-constexpr std::array<std::pair<double, double>, 4> order_four{
-    {{2, -1.0 / 12}, {-2, 1.0 / 12}, {1, 8.0 / 12}, {-1, -8.0 / 12}}};
 /// Weights of the derivative to order 6 from the scenes beside at h/2, h/4 and h/8, in the order of difference_offsets,
 /// times h. Scenes are as far away as their values change smoothly, and 1/m is not smooth enough for order 4.
 constexpr std::array<double, 8> order_six{0, 0, 1.0 / 45, -1.0 / 45, -40.0 / 45, 40.0 / 45, 256.0 / 45, -256.0 / 45};
@@ -100,7 +98,7 @@ class VariationalRun::Run {
     Slips rates;
     const auto add = [&](VariationalEquations& in, double weight, std::size_t d) {
       turn.hold(in);
-      if (const int code = SlipTurn::add_slips(turn, in, t, state.data(), weight, rates); code != 0) return code;
+      if (const int code = turn.add_slips(in, t, state.data(), weight, rates); code != 0) return code;
       if (const int code = in.context.rhs(t, state.data(), value.data()); code != 0) return code;
       for (std::size_t i = 0; i < n_; ++i) slopes_[d * n_ + i] += weight * value[i];
       return 0;

@@ -293,21 +293,19 @@ class FunctionComparisons {
     SymbolValues pushed = lookup_;
     std::vector<Real> push(n, Real(0)), push_size(n, Real(1));
     const auto row = [&](const eom::contacts::Row& place, std::size_t input) {
-      constexpr std::size_t prime = 1009, factor = 619;
+      constexpr std::size_t prime = 1'000'003, factor = 7919;  // no two of a million inputs have equal forces
       const Real force = 1 + to_exact(static_cast<double>(input * factor % prime)) / prime;
       Real acceleration = c[place.bias()], size = sizes_[0][place.bias()];
       for (std::size_t k = 0; k < place.columns.size(); ++k) {
-        const Real term = c[place.slope(k)] * (*rhs)[0][n + place.columns[k]];
+        const std::size_t column = place.columns[k];
+        const Real term = c[place.slope(k)] * (*rhs)[0][n + column], pushes = force * c[place.slope(k)];
         acceleration = acceleration + term;
         size = size + cln::abs(term);
+        push[column] = push[column] + pushes;
+        push_size[column] = push_size[column] + cln::abs(pushes);
       }
       follows(place.rate(), acceleration, size);
       pushed.state.inputs[input] = pushed.state.inputs[input] + force;
-      for (std::size_t k = 0; k < place.columns.size(); ++k) {
-        const Real term = force * c[place.slope(k)];
-        push[place.columns[k]] = push[place.columns[k]] + term;
-        push_size[place.columns[k]] = push_size[place.columns[k]] + cln::abs(term);
-      }
     };
     const ConstraintValues constraints = oracle_.constraint_values(v_.state);
     for (std::size_t j = 0; j < set.contacts.size(); ++j) {

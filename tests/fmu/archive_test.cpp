@@ -75,6 +75,8 @@ TEST_CASE("xml_text: everything that has a meaning in XML is escaped, and what X
   CHECK(emit::xml_text("line\n\ttab") == "line  tab");
   CHECK(emit::xml_text(std::string("nul\0bell\x07", 9)) == "nul?bell?");
   CHECK(emit::xml_text("\xc3\xa4\xff\xed\xa0\x80") == "\xc3\xa4????");
+  CHECK(emit::xml_text("a\xef\xbf\xbe\xef\xbf\xbf"
+                       "b\xef\xbf\xbd") == "a??b\xef\xbf\xbd");
 }
 
 TEST_CASE("fmu: the contents are those of the standard, equal in every emission, and nothing of a user escapes") {

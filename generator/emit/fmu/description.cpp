@@ -13,6 +13,7 @@
 
 #include "emit/fmu/xml.hpp"
 #include "emit/metadata.hpp"
+#include "emit/template_data.hpp"
 #include "emit/text.hpp"
 #include "skeletons/fmu_buildDescription_xml.hpp"
 #include "skeletons/fmu_modelDescription_xml.hpp"
@@ -21,14 +22,6 @@ namespace eomgen::emit {
 namespace {
 
 using kainjow::mustache::data;
-
-/// An object of the values that are not empty.
-data object(const std::vector<std::pair<std::string, std::string>>& values) {
-  data result{data::type::object};
-  for (const auto& [key, value] : values)
-    if (!value.empty()) result.set(key, value);
-  return result;
-}
 
 void add_list(data& all, const std::string& name, const data& list) {
   all.set(name, list);
@@ -49,8 +42,8 @@ data unit_definitions(const FmuDescription& description, const FmuVariables& var
     data powers{data::type::list};
     for (std::size_t k = 0; known != description.units.end() && k < base.size(); ++k)
       if (const int power = known->second.powers[k]; power != 0)
-        powers << object({{"base", base[k]}, {"power", fmt::format("{}", power)}});
-    data entry = object({{"text", unit}, {"is_known", known != description.units.end() ? "true" : ""}});
+        powers << template_object({{"base", base[k]}, {"power", fmt::format("{}", power)}});
+    data entry = template_object({{"text", unit}, {"is_known", known != description.units.end() ? "true" : ""}});
     entry.set("powers", powers);
     result << entry;
   }
@@ -62,17 +55,17 @@ data variable_list(const FmuVariables& variables, std::size_t first) {
   data result{data::type::list};
   for (std::size_t i = 0; i < variables.all.size(); ++i) {
     const FmuVariable& v = variables.all[i];
-    result << object({{"name", v.name},
-                      {"reference", fmt::format("{}", i)},
-                      {"description", v.description},
-                      {"causality", v.causality},
-                      {"variability", v.variability},
-                      {"initial", v.initial},
-                      {"unit", v.unit},
-                      {"nominal", number(v.nominal)},
-                      {"derivative", v.derivative_of ? fmt::format("{}", *v.derivative_of + first) : ""},
-                      {"is_state", v.is_state ? "true" : ""},
-                      {"start", number(v.start)}});
+    result << template_object({{"name", v.name},
+                               {"reference", fmt::format("{}", i)},
+                               {"description", v.description},
+                               {"causality", v.causality},
+                               {"variability", v.variability},
+                               {"initial", v.initial},
+                               {"unit", v.unit},
+                               {"nominal", number(v.nominal)},
+                               {"derivative", v.derivative_of ? fmt::format("{}", *v.derivative_of + first) : ""},
+                               {"is_state", v.is_state ? "true" : ""},
+                               {"start", number(v.start)}});
   }
   return result;
 }
@@ -90,7 +83,7 @@ data unknowns(const FmuVariables& variables, bool (*belongs)(const FmuVariable&)
   data result{data::type::list};
   for (std::size_t i = 0; i < variables.all.size(); ++i)
     if (belongs(variables.all[i]))
-      result << object({{"reference", fmt::format("{}", i)}, {"index", fmt::format("{}", i + 1)}});
+      result << template_object({{"reference", fmt::format("{}", i)}, {"index", fmt::format("{}", i + 1)}});
   return result;
 }
 
@@ -102,16 +95,16 @@ std::string model_description(const EmissionContext& context, const FmuDescripti
   const double rows = context.run->rows;
   const double step = p.output_interval > 0 ? p.output_interval : rows > 0 ? (p.t1 - p.t0) / rows : 0;
   const bool is_fmi3 = description.version == 3;
-  data all = object({{"fmi3", is_fmi3 ? "true" : ""},
-                     {"id", context.id},
-                     {"identifier", mangled_id(context.id)},
-                     {"token", token},
-                     {"title", context.title},
-                     {"indicator_count", fmt::format("{}", variables.event_indicators)},
-                     {"start_time", decimal(p.t0)},
-                     {"stop_time", decimal(p.t1)},
-                     {"tolerance", decimal(p.rtol)},
-                     {"step_size", step > 0 ? decimal(step) : ""}});
+  data all = template_object({{"fmi3", is_fmi3 ? "true" : ""},
+                              {"id", context.id},
+                              {"identifier", mangled_id(context.id)},
+                              {"token", token},
+                              {"title", context.title},
+                              {"indicator_count", fmt::format("{}", variables.event_indicators)},
+                              {"start_time", decimal(p.t0)},
+                              {"stop_time", decimal(p.t1)},
+                              {"tolerance", decimal(p.rtol)},
+                              {"step_size", step > 0 ? decimal(step) : ""}});
   add_list(all, "units", unit_definitions(description, variables));
   add_list(all, "variables", variable_list(variables, is_fmi3 ? 0 : 1));
   add_list(all, "outputs", unknowns(variables, is_output));

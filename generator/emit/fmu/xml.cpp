@@ -20,6 +20,11 @@ std::string xml_text(std::string_view text) {
       default: result += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
     }
   }
+  // XML 1.0, section 2.2: U+FFFE and U+FFFF are no characters.
+  for (const std::string_view excluded : {"\xef\xbf\xbe", "\xef\xbf\xbf"}) {
+    for (std::size_t at = result.find(excluded); at != std::string::npos; at = result.find(excluded, at))
+      result.replace(at, excluded.size(), "?");
+  }
   return result;
 }
 

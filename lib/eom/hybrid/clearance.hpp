@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Event functions that keep their signs throughout a step, without samples of the step: gaps of contacts far from their
 // surfaces. In: functions of time and coordinates as expressions, the ends of a step. Out: whether a function keeps its
-// sign, or is monotone. A function has a sign on a box that is larger than the step (step_boxes.hpp).
+// sign. A function has a sign on a box that is larger than the step (step_boxes.hpp).
 #pragma once
 
 #include <cmath>
@@ -38,13 +38,6 @@ class Clearance {
     return boxes_.contains(i, side) || boxes_.find(i, side, *ranges_.code(i), [side](const expressions::Interval& g) {
       return side > 0 ? g.low > rounding * std::abs(g.high) : -g.high > rounding * std::abs(g.low);
     });
-  }
-
-  /// Whether function i is monotone along the step: its values at samples show every crossing.
-  bool is_monotone(std::size_t i) const {
-    if (!boxes_.is_used(i)) return false;
-    const expressions::Interval slope = ranges_.code(i)->range(boxes_.step()).slope;
-    return slope.low > 0 || slope.high < 0;
   }
 
   /// Whether a function of this step needed a new box, or had none.

@@ -78,7 +78,7 @@ class EventFunctions {
   /// The interval of a step in which function i first leaves its side although no sample shows it.
   std::optional<std::pair<double, double>> hidden_crossing(const StepView& step, std::size_t i, int side, double from,
                                                            double to, const Sampling& sampling) const {
-    if (!is_available(i) || clearance_.is_monotone(i)) return std::nullopt;
+    if (!is_available(i)) return std::nullopt;
     return ranges_.first(step, i, side, from, to, sampling);
   }
 
