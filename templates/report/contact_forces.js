@@ -134,7 +134,7 @@ class ContactForces {
   admissible(patterns, responses, found) {
     const limits = this.contacts.map(() => null), largest = Math.max(0, ...this.forceSize);
     patterns.forEach(({j, component}, k) => {
-      const at = this.contacts[j], limit = limits[j] = limits[j] || {normal: -1, scale: 1, given: 0, holds: false, coefficient: 0, tangents: [], size: this.forceSize[j] > 0 ? this.forceSize[j] : largest};
+      const at = this.contacts[j], limit = limits[j] = limits[j] || {normal: -1, scale: 1, given: 0, holds: false, coefficient: 0, tangents: [], size: Math.max(this.forceSize[j], 1e-3 * largest)};
       if (component < 0) Object.assign(limit, {normal: k, scale: this.c[at.normal_scale] * (at.unilateral ? 1 : this.mode[j].sign)});
       else {
         if (limit.tangents.length === 0) Object.assign(limit, {holds: true, coefficient: this.c[at.static_coefficient], given: this.isHeld(j) ? 0 : Math.abs(this.c[at.given_normal])});

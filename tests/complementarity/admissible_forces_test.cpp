@@ -33,7 +33,7 @@ TEST_CASE("admissible forces: two feet share friction as long as any share holds
     CHECK(least_margin(limits, x) > 0);
     if (std::abs(push) < 0.9) CHECK(x == equal);
   }
-  const AdmissibleForces over(Eigen::Vector4d(1, 1.05, 3, 1.05), Z, limits);
+  AdmissibleForces over(Eigen::Vector4d(1, 1.05, 3, 1.05), Z, limits);
   // The largest margin is the same at both feet: (4 mu - push)/2.
   CHECK(std::abs(least_margin(limits, over.find()) + 0.05) < 1e-8);  // the last weight of the barrier, times the terms
 }

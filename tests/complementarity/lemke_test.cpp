@@ -10,6 +10,7 @@
 #include "eom/contacts/least_norm.hpp"
 
 using eom::contacts::ComplementaritySolution;
+using eom::contacts::LeastNormSolver;
 using eom::contacts::solve_complementarity;
 using eom::contacts::solve_least_norm;
 
@@ -98,4 +99,33 @@ TEST_CASE("least norm: dependent rows have the solution of least norm, others th
     CHECK(only.rank == n);
     CHECK((M * only.x - b).lpNorm<Eigen::Infinity>() < 1e-10);
   }
+}
+
+// W = J J^T with more rows than columns, of which some repeat: the rank stays the same while the rows turn.
+TEST_CASE("least norm: equations that change little are solved from the factors of earlier ones") {
+  std::mt19937 generator(5);
+  const Eigen::Index rows = 24, columns = 14;
+  const Eigen::MatrixXd A = random_matrix(generator, rows, columns), B = random_matrix(generator, rows, columns);
+  const Eigen::VectorXd pull = random_matrix(generator, columns, 1);
+  LeastNormSolver solver;
+  for (int k = 0; k <= 300; ++k) {
+    const double t = 1e-2 * k;  // the rows turn by several radians: factors have to be computed anew
+    CAPTURE(t);
+    const Eigen::MatrixXd J = std::cos(t) * A + std::sin(t) * B, W = J * J.transpose();
+    const Eigen::VectorXd right = J * pull;
+    const auto kept = solver.solve(W, right), direct = solve_least_norm(W, right);
+    REQUIRE(kept.rank == direct.rank);
+    REQUIRE(kept.rank == columns);
+    const double size = direct.x.lpNorm<Eigen::Infinity>();
+    REQUIRE((kept.x - direct.x).lpNorm<Eigen::Infinity>() < 1e-9 * size);  // rounding times the condition of W
+    REQUIRE((W * kept.x - right).lpNorm<Eigen::Infinity>() < 1e-11 * (size + 1));
+  }
+  // Equations of another rank, and ones that contradict one another, are solved anew.
+  const Eigen::MatrixXd regular = A * A.transpose() + Eigen::MatrixXd::Identity(rows, rows);
+  CHECK(solver.solve(regular, A * pull).rank == rows);
+  const Eigen::MatrixXd W = A * A.transpose();
+  const Eigen::VectorXd any = random_matrix(generator, rows, 1);
+  const auto kept = solver.solve(W, any), direct = solve_least_norm(W, any);
+  CHECK(kept.rank == columns);
+  CHECK((kept.x - direct.x).norm() < 1e-9 * direct.x.norm());
 }

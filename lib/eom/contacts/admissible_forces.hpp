@@ -56,30 +56,72 @@ class AdmissibleForces {
 
   /// x: a solution; Z: a basis of the directions without effect; `limits` must outlive this object.
   AdmissibleForces(Vector x, Matrix Z, const std::vector<ForceLimit>& limits)
-      : x_(std::move(x)), Z_(std::move(Z)), limits_(limits) {
-    size_ = 0;
+      : x_(std::move(x)), Z_(std::move(Z)), limits_(limits), best_(x_) {
     for (const ForceLimit& limit : limits_) size_ = std::max(size_, limit.size);
   }
 
   /// The forces. They are x if it obeys all limits by a margin.
-  Vector find() const {
+  Vector find() {
     if (Z_.cols() == 0 || !(size_ > 0) || least_margin(limits_, x_) >= wanted_margin) return x_;
-    const Vector best = x_ + Z_ * largest_margin();
-    const double reached = least_margin(limits_, best);
-    if (!(reached > 0)) return best;
+    write_margins();
+    best_ = x_ + Z_ * largest_margin();
+    const double reached = least_margin(limits_, best_);
+    if (!(reached > 0)) return best_;
     const double margin = std::min(wanted_margin, reached / 2);
     double outside = 0, inside = 1;  // of the way from x to the best forces: the margin is a concave function
     for (int k = 0; k < bisections; ++k) {
       const double middle = (outside + inside) / 2;
-      (least_margin(limits_, x_ + middle * (best - x_)) >= margin ? inside : outside) = middle;
+      (least_margin(limits_, x_ + middle * (best_ - x_)) >= margin ? inside : outside) = middle;
     }
-    return x_ + std::min(1.0, 2 * inside) * (best - x_);
+    return x_ + std::min(1.0, 2 * inside) * (best_ - x_);
   }
+  /// After find(): the forces whose least margin is largest, or x.
+  const Vector& best() const { return best_; }
 
  private:
   static constexpr double pull = 1e-7;  // towards small y: margins may grow without bound
   static constexpr double last_weight = 1e-9, weight_ratio = 0.1;
   static constexpr int bisections = 40, most_newton_steps = 30;
+
+  /// Affine functions of v = (y, s): at + slopes v, one per row.
+  struct Affine {
+    Vector at;
+    Matrix slopes;
+    void resize(Index rows, Index columns) { at.setZero(rows), slopes.setZero(rows, columns); }
+    Vector operator()(const Vector& v) const { return at + slopes * v; }
+  };
+
+  /// All margins minus s, and the components of the friction forces; y has the unit size_.
+  void write_margins() {
+    const Index d = Z_.cols();
+    Index normals = 1, laws = 0, tangents = 0;
+    for (const ForceLimit& limit : limits_) {
+      normals += limit.normal >= 0 ? 1 : 0;
+      laws += limit.holds ? 1 : 0;
+      tangents += limit.holds ? static_cast<Index>(limit.tangents) : 0;
+    }
+    linear_.resize(normals, d + 1), bounds_.resize(laws, d + 1), friction_.resize(tangents, d + 1);
+    linear_.at(0) = 1, linear_.slopes(0, d) = -1;  // 1 - s
+    normals = 1, laws = tangents = 0;
+    const auto write = [&](Affine& rows, Index row, Index force, double factor) {
+      rows.at(row) += factor * x_(force);
+      rows.slopes.row(row).head(d) += factor * size_ * Z_.row(force);
+    };
+    for (const ForceLimit& limit : limits_) {
+      if (limit.normal >= 0) {
+        write(linear_, normals, limit.normal, limit.scale / limit.size);
+        linear_.slopes(normals++, d) = -1;
+      }
+      if (!limit.holds) continue;
+      if (limit.normal >= 0)
+        write(bounds_, laws, limit.normal, limit.coefficient * limit.scale / limit.size);
+      else
+        bounds_.at(laws) = limit.coefficient * limit.given / limit.size;
+      bounds_.slopes(laws++, d) = -1;
+      for (std::size_t k = 0; k < limit.tangents; ++k)
+        write(friction_, tangents++, limit.tangent + static_cast<Index>(k), 1 / limit.size);
+    }
+  }
 
   /// Minimises -s + pull |y|^2 / 2 + weight B(y, s), B: logarithmic barriers of all margins minus s, and of 1 - s, for
   /// ever smaller weights (Boyd and Vandenberghe, Convex Optimization, section 11.3). y has the unit size_.
@@ -87,10 +129,10 @@ class AdmissibleForces {
     const Index d = Z_.cols();
     Vector v = Vector::Zero(d + 1);  // y, s
     v(d) = least_margin(limits_, x_) - 1;
+    Vector gradient(d + 1);
+    Matrix hessian(d + 1, d + 1);
     for (double weight = 1; weight >= last_weight; weight *= weight_ratio) {
       for (int step = 0; step < most_newton_steps; ++step) {
-        Vector gradient(d + 1);
-        Matrix hessian(d + 1, d + 1);
         const double now = evaluate(v, weight, &gradient, &hessian);
         const Vector direction = -hessian.ldlt().solve(gradient);
         const double fall = gradient.dot(direction);
@@ -109,57 +151,36 @@ class AdmissibleForces {
   /// The function that largest_margin() minimises, with its derivatives; infinite outside the limits.
   double evaluate(const Vector& v, double weight, Vector* gradient, Matrix* hessian) const {
     const Index d = Z_.cols();
-    const double s = v(d), infinite = std::numeric_limits<double>::infinity();
-    const Vector x = x_ + size_ * (Z_ * v.head(d));
-    double value = -s + pull / 2 * v.head(d).squaredNorm();
+    const double infinite = std::numeric_limits<double>::infinity();
+    const Vector margins = linear_(v), a = bounds_(v), b = friction_(v);
+    if (!(margins.minCoeff() > 0)) return infinite;
+    double value = -v(d) + pull / 2 * v.head(d).squaredNorm() - weight * margins.array().log().sum();
     if (gradient != nullptr) {
-      *gradient = Vector::Zero(d + 1);
-      gradient->head(d) = pull * v.head(d);
-      (*gradient)(d) = -1;
-      *hessian = Matrix::Zero(d + 1, d + 1);
-      hessian->topLeftCorner(d, d).diagonal().setConstant(pull);
+      const Vector inverse = margins.cwiseInverse();
+      gradient->noalias() = -weight * (linear_.slopes.transpose() * inverse);
+      gradient->head(d) += pull * v.head(d);
+      (*gradient)(d) -= 1;
+      hessian->noalias() =
+          linear_.slopes.transpose() * (weight * inverse.array().square()).matrix().asDiagonal() * linear_.slopes;
+      hessian->topLeftCorner(d, d).diagonal().array() += pull;
     }
-    const auto row = [&](Index force, double factor) {  // d(factor x(force))/dv
-      Vector result = Vector::Zero(d + 1);
-      result.head(d) = factor * size_ * Z_.row(force).transpose();
-      return result;
-    };
-    const auto add_linear = [&](double margin, const Vector& slope) {
-      if (!(margin > 0)) return false;
-      value -= weight * std::log(margin);
-      if (gradient == nullptr) return true;
-      *gradient -= weight / margin * slope;
-      *hessian += weight / (margin * margin) * slope * slope.transpose();
-      return true;
-    };
-    Vector last = Vector::Zero(d + 1);
-    last(d) = -1;
-    if (!add_linear(1 - s, last)) return infinite;
+    // -log(a^2 - |b|^2) with a = coefficient N / size - s and b = T / size.
+    Index law = 0, tangent = 0;
     for (const ForceLimit& limit : limits_) {
-      const double normal = limit.normal < 0 ? limit.given : limit.scale * x(limit.normal);
-      Vector slope = limit.normal < 0 ? Vector(Vector::Zero(d + 1)) : row(limit.normal, limit.scale / limit.size);
-      if (limit.normal >= 0 && !add_linear(normal / limit.size - s, slope + last)) return infinite;
       if (!limit.holds) continue;
-      // -log(a^2 - |b|^2) with a = coefficient N / size - s and b = T / size.
-      const double a = limit.coefficient * normal / limit.size - s;
-      const Vector slope_a = limit.coefficient * slope + last;
-      double inside = a * a;
-      Vector slope_of_inside = 2 * a * slope_a;
-      Matrix curvature = 2 * slope_a * slope_a.transpose();
-      for (std::size_t k = 0; k < limit.tangents; ++k) {
-        const Index tangent = limit.tangent + static_cast<Index>(k);
-        const double b = x(tangent) / limit.size;
-        const Vector slope_b = row(tangent, 1 / limit.size);
-        inside -= b * b;
-        slope_of_inside -= 2 * b * slope_b;
-        curvature -= 2 * slope_b * slope_b.transpose();
-      }
-      if (!(a > 0 && inside > 0)) return infinite;
+      const auto count = static_cast<Index>(limit.tangents);
+      const double inside = a(law) * a(law) - b.segment(tangent, count).squaredNorm();
+      if (!(a(law) > 0 && inside > 0)) return infinite;
       value -= weight * std::log(inside);
-      if (gradient == nullptr) continue;
-      *gradient -= weight / inside * slope_of_inside;
-      *hessian +=
-          weight / (inside * inside) * slope_of_inside * slope_of_inside.transpose() - weight / inside * curvature;
+      if (gradient != nullptr) {
+        const auto of_a = bounds_.slopes.row(law).transpose();
+        const auto of_b = friction_.slopes.middleRows(tangent, count);
+        const Vector slope = 2 * (a(law) * of_a - of_b.transpose() * b.segment(tangent, count));
+        *gradient -= weight / inside * slope;
+        *hessian += weight / (inside * inside) * slope * slope.transpose();
+        *hessian -= 2 * weight / inside * (of_a * of_a.transpose() - of_b.transpose() * of_b);
+      }
+      ++law, tangent += count;
     }
     return value;
   }
@@ -168,23 +189,30 @@ class AdmissibleForces {
   Matrix Z_;
   const std::vector<ForceLimit>& limits_;
   double size_ = 0;
+  Vector best_;
+  Affine linear_, bounds_, friction_;  // normal forces and 1; limits of friction; friction
 };
+
+/// Smaller effects, of unit forces with an effect of 1, are rounding.
+inline constexpr double effect_tolerance = 1e-5;
 
 /// A basis of the forces without effect: columns Z with R Z = 0. R: accelerations for unit forces, n x k. Columns of R
 /// are scaled before, so that forces of different units count alike.
 inline Eigen::MatrixXd forces_without_effect(Eigen::MatrixXd R) {
-  constexpr double rank_tolerance = 1e-10;
   const Eigen::Index k = R.cols();
   Eigen::VectorXd columns = Eigen::VectorXd::Ones(k);
   for (Eigen::Index i = 0; i < k; ++i) {
     const double size = R.col(i).norm();
     if (size > 0) columns(i) = 1 / size, R.col(i) /= size;
   }
-  const Eigen::MatrixXd square = R.transpose() * R;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> decomposition(square);
-  Eigen::Index count = 0;  // eigenvalues ascend
-  while (count < k && decomposition.eigenvalues()(count) < rank_tolerance) ++count;
-  Eigen::MatrixXd Z = columns.asDiagonal() * decomposition.eigenvectors().leftCols(count);
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
+  decomposition.setThreshold(effect_tolerance);
+  decomposition.compute(R);
+  // R P = Q [T 0; 0 0] Z: the last rows of Z span the directions without effect.
+  const Eigen::Index rank = decomposition.rank(), count = k - rank;
+  if (count == 0) return Eigen::MatrixXd(k, 0);
+  const Eigen::MatrixXd basis = decomposition.matrixZ().transpose().rightCols(count);
+  Eigen::MatrixXd Z = columns.asDiagonal() * (decomposition.colsPermutation() * basis);
   for (Eigen::Index i = 0; i < count; ++i) Z.col(i) /= Z.col(i).lpNorm<Eigen::Infinity>();
   return Z;
 }

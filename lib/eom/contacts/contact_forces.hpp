@@ -22,6 +22,7 @@
 #include "eom/contacts/description.hpp"
 #include "eom/contacts/least_norm.hpp"
 #include "eom/contacts/slip_start.hpp"
+#include "eom/contacts/unit_responses.hpp"
 
 namespace eom::contacts {
 
@@ -36,15 +37,11 @@ struct ContactState {
   bool starts = false;                // slip in two directions has begun and is still that small
 };
 
-/// The compiled code as these classes need it: a right-hand side and the rows of contacts, with all inputs given.
-struct System {
-  virtual ~System() = default;
-  /// n, the number of free coordinates.
-  virtual std::size_t coordinates() const = 0;
-  /// qddot of the free coordinates. Returns a code of the ABI.
-  virtual int accelerations(double t, const double* x, const double* u, double* qddot) = 0;
-  /// Writes the array c (description.hpp) at a state. Returns a code of the C ABI.
-  virtual int rows(double t, const double* x, const double* u, double* c) = 0;
+/// Which of the forces are wanted that the motion does not determine.
+enum class ForceChoice {
+  any,         // for accelerations, which do not depend on it
+  admissible,  // within the limits of all laws, if any are: for their signs
+  unique       // the same ones for the same state: for outputs
 };
 
 /// The forces of all contacts at one state, in given modes.
@@ -58,14 +55,13 @@ class ContactForces {
   ContactForces(const Set& set, System& system)
       : set_(set),
         system_(system),
+        responses_of_(set, system),
         n_(system.coordinates()),
         states_(set.contacts.size()),
         c_(set.values),
         lambda_(set.contacts.size(), 0.0),
         phi_(set.contacts.size()),
-        amplitude_(3 * set.contacts.size(), 1.0),
-        free_(n_),
-        work_(n_) {
+        free_(n_) {
     for (std::size_t j = 0; j < set_.contacts.size(); ++j) {
       for (std::size_t i = 0; i < set_.contacts.size() && contact(j).unilateral; ++i) {
         for (const Row& slip : contact(i).slip)
@@ -112,7 +108,7 @@ class ContactForces {
   /// The acceleration of a row's velocity.
   double acceleration(const Row& row, const Vector& qddot) const { return c_[row.bias()] + change(row, qddot); }
   /// The acceleration of the row that qddot causes.
-  double change(const Row& row, const Vector& qddot) const {
+  double change(const Row& row, const Eigen::Ref<const Vector>& qddot) const {
     double sum = 0;
     for (std::size_t k = 0; k < row.columns.size(); ++k)
       sum += c_[row.slope(k)] * qddot(static_cast<Index>(row.columns[k]));
@@ -150,12 +146,7 @@ class ContactForces {
     return is_closed(j) && !contact(j).slip.empty() && !(contact(j).sticks && states_[j].mode == Mode::closed);
   }
 
-  /// A unit force: an input, and the further inputs in proportion to it.
-  struct Pattern {
-    std::size_t contact = 0;
-    int component = -1;  // -1: the normal, with the friction that follows from it; 0, 1: a tangent
-    std::vector<std::pair<std::size_t, double>> inputs = {};
-  };
+  using Pattern = contacts::Pattern;
   /// The unit force of lambda of contact j; with_friction: and of the friction that follows from it.
   Pattern normal_pattern(std::size_t j, bool with_friction) const {
     const Description& at = contact(j);
@@ -188,28 +179,16 @@ class ContactForces {
   const Vector& free_accelerations() const { return free_; }
   /// The accelerations with the forces of the current states. u has no contact forces. Rows are evaluated.
   int evaluate_accelerations(double t, const double* x, double* u, Vector& qddot) {
-    if (const int code = solve(t, x, u); code != 0) return code;
+    if (const int code = solve(t, x, u, ForceChoice::any); code != 0) return code;
     if (const int code = evaluate_rows(t, x, u); code != 0) return code;
     qddot.resize(static_cast<Index>(n_));
     return system_.accelerations(t, x, u, qddot.data());
   }
 
-  /// The change of the accelerations for a unit force, after evaluate_free(). It is computed from a force with an
-  /// effect of the size of the accelerations, so that few digits are lost.
-  int response(double t, const double* x, double* u, const Pattern& pattern, Vector& result) {
-    double& amplitude = amplitude_[3 * pattern.contact + static_cast<std::size_t>(pattern.component + 1)];
-    const double size = free_.lpNorm<Eigen::Infinity>();
-    for (int attempt = 0; attempt < 2; ++attempt) {
-      push(u, pattern, amplitude);
-      const int code = system_.accelerations(t, x, u, work_.data());
-      push(u, pattern, -amplitude);
-      if (code != 0 || !work_.allFinite()) return code != 0 ? code : code_not_finite;
-      result = (work_ - free_) / amplitude;
-      const double effect = result.lpNorm<Eigen::Infinity>() * amplitude;
-      if (size == 0 || effect == 0 || (effect > 1e-2 * size && effect < 1e2 * size)) break;
-      amplitude *= size / effect;
-    }
-    return 0;
+  /// The changes of the accelerations for unit forces, one column each, after evaluate_free().
+  int responses(double t, const double* x, double* u, const std::vector<Pattern>& patterns,
+                UnitResponses::Groups& groups, Matrix& result) {
+    return responses_of_.evaluate(t, x, u, free_, patterns, groups, result);
   }
 
   /// Whether all contacts are open: there are no forces, and the rows need not be evaluated.
@@ -219,7 +198,7 @@ class ContactForces {
 
   /// Solves for the forces in the current states and adds them to u, whose contact forces are 0. Returns a code. Rows
   /// are evaluated unless all contacts are open.
-  int solve(double t, const double* x, double* u) {
+  int solve(double t, const double* x, double* u, ForceChoice choice = ForceChoice::unique) {
     if (all_open()) {
       margins_.assign(set_.contacts.size(), 1.0);
       force_size_.assign(set_.contacts.size(), 0.0);
@@ -244,13 +223,15 @@ class ContactForces {
     const auto count = static_cast<Index>(patterns.size());
     force_size_.assign(set_.contacts.size(), 0.0);
     force_per_acceleration_.assign(set_.contacts.size(), 0.0);
-    Matrix W(count, count);
+    const std::size_t before = groups_.changes;
+    if (const int code = responses(t, x, u, patterns, groups_, responses_); code != 0) return code;
+    if (before != groups_.changes) couple_rows();
+    Matrix& W = W_;
+    W.setZero(count, count);
     Vector right(count);
-    responses_.resize(static_cast<Index>(n_), count);
     for (Index k = 0; k < count; ++k) {
-      if (const int code = response(t, x, u, patterns[static_cast<std::size_t>(k)], response_); code != 0) return code;
-      for (Index i = 0; i < count; ++i) W(i, k) = change(*rows_[static_cast<std::size_t>(i)], response_);
-      responses_.col(k) = response_;
+      for (const std::size_t i : coupled_[static_cast<std::size_t>(k)])
+        W(static_cast<Index>(i), k) = change(*rows_[i], responses_.col(k));
       const Row& row = *rows_[static_cast<std::size_t>(k)];
       right(k) = -acceleration(row, free_);
       const double share = std::abs(W(k, k)), size = observe_acceleration(row);
@@ -263,9 +244,9 @@ class ContactForces {
     std::fill(lambda_.begin(), lambda_.end(), 0.0);
     std::fill(phi_.begin(), phi_.end(), std::array<double, 2>{});
     if (count > 0) {
-      LeastNorm forces = solve_least_norm(W, right);
+      LeastNorm forces = least_norm_.solve(W, right);
       undetermined_ = undetermined_ || forces.rank < count;
-      if (forces.rank < count) make_admissible(forces.x);
+      if (forces.rank < count) make_admissible(forces.x, choice);
       for (Index k = 0; k < count; ++k) {
         const Pattern& pattern = patterns[static_cast<std::size_t>(k)];
         push(u, pattern, forces.x(k));
@@ -319,19 +300,36 @@ class ContactForces {
   /// Whether the forces of some state were not unique.
   bool undetermined() const { return undetermined_; }
   /// Begins anew with undetermined() and acceleration_rounding().
-  void reset() { undetermined_ = false, largest_acceleration_ = 0; }
+  void reset() { undetermined_ = false, largest_acceleration_ = 0, discard_factors(); }
+  /// Solves the next equations anew, without factors of earlier states.
+  void discard_factors() {
+    least_norm_.reset();
+    preload_.resize(0);
+    effect_inverse_.resize(0, 0);
+  }
 
-  static constexpr int code_not_finite = 5;  // as in the C ABI
+  static constexpr int code_not_finite = UnitResponses::code_not_finite;
 
  private:
+  /// The rows whose accelerations a pattern may change, after a change of the patterns.
+  void couple_rows() {
+    discard_factors();
+    std::vector<std::vector<std::size_t>> rows_of(n_);  // per coordinate
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      for (const std::size_t column : rows_[i]->columns) rows_of[column].push_back(i);
+    coupled_.assign(patterns_.size(), {});
+    for (std::size_t k = 0; k < patterns_.size(); ++k) {
+      for (const std::size_t column : responses_of_.affected(patterns_[k]))
+        coupled_[k].insert(coupled_[k].end(), rows_of[column].begin(), rows_of[column].end());
+      std::sort(coupled_[k].begin(), coupled_[k].end());
+      coupled_[k].erase(std::unique(coupled_[k].begin(), coupled_[k].end()), coupled_[k].end());
+    }
+  }
   /// The sum of the terms of the acceleration of a row.
   double observe_acceleration(const Row& row) {
     const double size = std::abs(c_[row.bias()]) + terms(row, free_.data());
     if (std::isfinite(size)) largest_acceleration_ = std::max(largest_acceleration_, size);
     return size;
-  }
-  static void push(double* u, const Pattern& pattern, double amount) {
-    for (const auto& [input, share] : pattern.inputs) u[input] += share * amount;
   }
   /// s with row = s times the other, of the same columns; 0 if they are not parallel.
   double ratio(const Row& row, const Row& other) const;
@@ -341,7 +339,11 @@ class ContactForces {
   /// friction acts where nothing else prevents slip.
   void pass_to_stop(double* u, const Pattern& tangent, double force);
   /// Moves forces that the motion does not determine, of patterns_, within the limits of their laws.
-  void make_admissible(Vector& forces) const;
+  void make_admissible(Vector& forces, ForceChoice choice);
+  /// limits_ of patterns_.
+  void write_limits();
+  /// Removes the part of forces of patterns_ that changes accelerations. False: forces are unchanged.
+  bool remove_effect(Vector& forces);
   void signs_of_margins(std::size_t j, double minus_free) {
     several_.resize(set_.contacts.size());
     several_[j] = minus_free < 0;
@@ -355,18 +357,24 @@ class ContactForces {
 
   const Set& set_;
   System& system_;
+  UnitResponses responses_of_;
   std::size_t n_;
   std::vector<ContactState> states_;
   std::vector<double> c_, lambda_, margins_, force_size_, force_per_acceleration_;
   std::vector<std::array<double, 2>> phi_;
   std::vector<std::optional<std::array<double, 2>>> prescribed_;
-  std::vector<double> amplitude_;
   std::vector<bool> several_;
   std::vector<Alike> alike_;
   std::vector<Pattern> patterns_;
   std::vector<const Row*> rows_;
-  Vector free_, work_, response_;
-  Matrix responses_;  // n x patterns
+  UnitResponses::Groups groups_;                   // of patterns_
+  std::vector<std::vector<std::size_t>> coupled_;  // per pattern: the rows whose accelerations it may change
+  LeastNormSolver least_norm_;
+  std::vector<ForceLimit> limits_;  // of the forces of patterns_
+  Vector preload_;                  // forces without effect that had the largest margins in some earlier state
+  Matrix effect_inverse_;           // pseudoinverse of responses_ of some earlier state, columns of length 1
+  Vector free_;
+  Matrix responses_, W_;  // n x patterns; of rows_
   double least_slip_ = 0, start_slip_ = 0, largest_acceleration_ = 0;
   std::size_t changes_ = 0;
   bool undetermined_ = false;
@@ -374,5 +382,5 @@ class ContactForces {
 
 }  // namespace eom::contacts
 
-#include "eom/contacts/force_limits.hpp"       // the member that finds admissible forces
+#include "eom/contacts/force_limits.hpp"       // the members that find admissible forces
 #include "eom/contacts/friction_at_stops.hpp"  // the members for friction along the normal of another contact

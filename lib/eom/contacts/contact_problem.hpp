@@ -23,10 +23,9 @@ class ContactProblem {
   ContactProblem(ContactForces& forces, double t, const double* x, double* u) : forces_(forces), t_(t), x_(x), u_(u) {}
 
   /// A row with a unit force. Returns its index.
-  Index add_row(std::size_t j, const Row& row, const ContactForces::Pattern& pattern, Kind kind) {
-    Vector response;
-    if (code_ == 0) code_ = forces_.response(t_, x_, u_, pattern, response);
-    rows_.push_back({&row, j, std::move(response)});
+  Index add_row(std::size_t j, const Row& row, Pattern pattern, Kind kind) {
+    rows_.push_back({&row, j});
+    patterns_.push_back(std::move(pattern));
     problem_.kinds.push_back(kind);
     return static_cast<Index>(rows_.size()) - 1;
   }
@@ -45,14 +44,15 @@ class ContactProblem {
     contact_of_law_.push_back(j);
   }
 
-  /// The matrix of responses, after the last row. Returns a code of the ABI.
+  /// The matrix of responses, to be called after the last row. Returns a code of the ABI.
   int complete() {
     const Index count = size();
     problem_.G.resize(count, count);
     problem_.q.resize(count);
-    if (code_ != 0) return code_;
-    for (Index i = 0; i < count; ++i)
-      for (Index k = 0; k < count; ++k) problem_.G(i, k) = forces_.change(row(i), response(k));
+    UnitResponses::Groups groups;
+    if (const int code = forces_.responses(t_, x_, u_, patterns_, groups, responses_); code != 0) return code;
+    for (Index k = 0; k < count; ++k)
+      for (Index i = 0; i < count; ++i) problem_.G(i, k) = forces_.change(row(i), responses_.col(k));
     return 0;
   }
 
@@ -61,7 +61,7 @@ class ContactProblem {
   const Row& row(Index i) const { return *rows_[static_cast<std::size_t>(i)].row; }
   std::size_t contact(Index i) const { return rows_[static_cast<std::size_t>(i)].contact; }
   /// The change of the accelerations, or of the rates, for a unit force along row i.
-  const Vector& response(Index i) const { return rows_[static_cast<std::size_t>(i)].response; }
+  auto response(Index i) const { return responses_.col(i); }
   Kind kind(Index i) const { return problem_.kinds[static_cast<std::size_t>(i)]; }
   const std::vector<std::size_t>& contact_of_law() const { return contact_of_law_; }
 
@@ -77,7 +77,6 @@ class ContactProblem {
   struct Entry {
     const Row* row;
     std::size_t contact;
-    Vector response;
   };
 
   ContactForces& forces_;
@@ -86,8 +85,9 @@ class ContactProblem {
   double* u_;
   FrictionProblem problem_;
   std::vector<Entry> rows_;
+  std::vector<Pattern> patterns_;
+  Eigen::MatrixXd responses_;  // n x rows
   std::vector<std::size_t> contact_of_law_;
-  int code_ = 0;
 };
 
 }  // namespace eom::contacts

@@ -50,23 +50,24 @@ class Thresholds {
 
   /// The rows of the forces are evaluated at the state x. Contacts with `skipped` are left out.
   void observe(const double* x, const std::vector<bool>& skipped = {}) {
-    const double* const rates = x + n_;
-    for (std::size_t j = 0; j < sizes_.gap.size(); ++j) {
-      if (j < skipped.size() && skipped[j]) continue;
-      const Description& at = forces_.contact(j);
-      const auto observe_speed = [&](const Row& row) { grow(sizes_.speed, forces_.terms(row, rates)); };
-      if (at.has_constraint()) {
-        observe_speed(at.normal);
-        grow(sizes_.terms[j], forces_.terms(at.normal, x));
-      }
-      for (const Row& row : at.slip) observe_speed(row);
-      if (!at.unilateral) continue;
-      if (forces_.is_closed(j)) {
-        sizes_.flight[j] = 0;
-      } else {
-        grow(sizes_.gap[j], forces_.value(at.gap));
-        grow(sizes_.flight[j], forces_.value(at.gap));
-      }
+    for (std::size_t j = 0; j < sizes_.gap.size(); ++j)
+      if (j >= skipped.size() || !skipped[j]) observe_contact(j, x);
+  }
+  /// Of contact j alone.
+  void observe_contact(std::size_t j, const double* x) {
+    const Description& at = forces_.contact(j);
+    const auto observe_speed = [&](const Row& row) { grow(sizes_.speed, forces_.terms(row, x + n_)); };
+    if (at.has_constraint()) {
+      observe_speed(at.normal);
+      grow(sizes_.terms[j], forces_.terms(at.normal, x));
+    }
+    for (const Row& row : at.slip) observe_speed(row);
+    if (!at.unilateral) return;
+    if (forces_.is_closed(j)) {
+      sizes_.flight[j] = 0;
+    } else {
+      grow(sizes_.gap[j], forces_.value(at.gap));
+      grow(sizes_.flight[j], forces_.value(at.gap));
     }
   }
   /// The forces are solved for.

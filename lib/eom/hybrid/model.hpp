@@ -163,14 +163,15 @@ class Model {
     return u_.data();
   }
   /// Solves for the forces of contacts at a state. They are then among inputs(t).
-  int solve_contacts(double t, const double* x) const {
+  int solve_contacts(double t, const double* x, contacts::ForceChoice choice = contacts::ForceChoice::unique) const {
     if (!forces_ || is_in_flight()) return 0;
-    if (t == solved_t_ && std::equal(solved_x_.begin(), solved_x_.end(), x)) return 0;
+    if (t == solved_t_ && choice <= solved_choice_ && std::equal(solved_x_.begin(), solved_x_.end(), x)) return 0;
     forget_contact_forces();
     std::fill(u_.begin() + static_cast<std::ptrdiff_t>(scene_inputs_), u_.end(), 0.0);
     inputs(t);
-    const int code = forces_->solve(t, x, u_.data());
+    const int code = forces_->solve(t, x, u_.data(), choice);
     if (code != 0) return code;
+    solved_choice_ = choice;
     if (forces_->all_open()) flight_ = forces_->changes();
     solved_t_ = t;
     solved_x_.assign(x, x + code_->layout().size());
@@ -184,7 +185,7 @@ class Model {
   /// dx = f(t, x) in the current mode.
   int rhs(double t, const double* x, double* dx) {
     if (sliding_.any()) return sliding_.evaluate(mode_, t, x, dx);
-    if (const int code = solve_contacts(t, x); code != 0) return code;
+    if (const int code = solve_contacts(t, x, contacts::ForceChoice::any); code != 0) return code;
     const double* u = inputs(t);
     const double* const at = is_slip_starting() ? slip_starts_->lead(t, x, u) : x;
     int code = motion(t, at, u, mode_.data(), dx);
@@ -238,8 +239,9 @@ class Model {
   }
 
   /// In second charts, entries that exist only in the own charts remain unchanged.
-  int outputs(double t, const double* x, double* y) const {
-    if (const int code = solve_contacts(t, x); code != 0) return code;
+  int outputs(double t, const double* x, double* y,
+              contacts::ForceChoice choice = contacts::ForceChoice::unique) const {
+    if (const int code = solve_contacts(t, x, choice); code != 0) return code;
     const auto in_mode = [&](const ModeArray& mode, double* values) {
       return code_->outputs(t, x, parameters(), inputs(t), mode.data(), values);
     };
@@ -259,7 +261,10 @@ class Model {
   /// slides has 1 - w^2 with its weight w, which is positive while it holds the state.
   int events(double t, const double* x, double* g) {
     if (code_->events == nullptr) return 0;
-    if (const int code = solve_contacts(t, x); code != 0) return code;
+    // Events of the model may be functions of the forces; those of contacts depend on their signs only.
+    using contacts::ForceChoice;
+    const ForceChoice choice = problem_.events.empty() ? ForceChoice::admissible : ForceChoice::unique;
+    if (const int code = solve_contacts(t, x, choice); code != 0) return code;
     const int code = code_->events(t, x, parameters(), inputs(t), mode_.data(), g);
     if (code != 0 || !sliding_.any()) return code;
     std::vector<double> dx(problem_.states());
@@ -291,6 +296,12 @@ class Model {
     int rows(double t, const double* x, const double* u, double* c) override {
       return of->code_->contact_rows(t, x, of->parameters(), u, of->mode_.data(), c);
     }
+    std::size_t equations() override {
+      if (!(of->mode_ == mode)) mode = of->mode_, ++changes;
+      return changes;
+    }
+    ModeArray mode;
+    std::size_t changes = 0;
   };
   /// Whether all contacts are known to be open: their forces among the inputs are 0.
   bool is_in_flight() const { return flight_ && *flight_ == forces_->changes(); }
@@ -377,6 +388,7 @@ class Model {
   std::unique_ptr<contacts::ContactForces> forces_;
   mutable double solved_t_ = std::numeric_limits<double>::quiet_NaN();  // the state for which u_ has contact forces
   mutable std::vector<double> solved_x_;
+  mutable contacts::ForceChoice solved_choice_ = contacts::ForceChoice::any;
   mutable std::optional<std::size_t> flight_;  // ContactForces::changes() since which all contacts are open
   mutable SlidingSurfaces<Branches, Surfaces> sliding_;
 };

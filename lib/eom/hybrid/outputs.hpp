@@ -23,18 +23,22 @@ class Outputs {
 
   /// Returns a code of the compiled function.
   int operator()(double t, const double* x, std::span<double> y) const {
-    const int result = model_.outputs(t, x, y.data());
-    if (charts_.second_charts() != 0) own_values(t, x, y);
-    return result;
+    return evaluate(t, x, y, contacts::ForceChoice::unique);
   }
 
   /// The energy in J.
   double energy(double t, const double* x) {
-    (*this)(t, x, y_);
+    evaluate(t, x, y_, contacts::ForceChoice::any);
     return y_[problem_.energy];
   }
 
  private:
+  int evaluate(double t, const double* x, std::span<double> y, contacts::ForceChoice choice) const {
+    const int result = model_.outputs(t, x, y.data(), choice);
+    if (charts_.second_charts() != 0) own_values(t, x, y);
+    return result;
+  }
+
   /// Outputs that second charts do not provide: the coordinates, and quantities defined or conserved in the own charts
   /// only.
   void own_values(double t, const double* x, std::span<double> y) const {
