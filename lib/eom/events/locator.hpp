@@ -10,8 +10,10 @@
 // searched for if they indicate a dip that may reach zero: three samples by the parabola through them, four by the
 // lines through the two outer samples on each side, which bound a convex function, with or without a kink, from below.
 // g may also have a member is_clear(view, i, side): function i has this sign throughout the step, which is not sampled
-// if all functions are clear. At each crossing all functions are evaluated. One that is beyond zero there has crossed
-// before, however short the interval and whatever the samples show. A zero without a change of sign is not an event.
+// if all functions are clear, and a member value(t, x, i), which is function i alone. At each crossing all functions
+// are evaluated. One that is beyond zero there has crossed before, however short the interval and whatever the samples
+// show. The search starts with the function whose samples cross first; of the others only what precedes that crossing
+// is searched. A zero without a change of sign is not an event.
 #pragma once
 
 #include <algorithm>
@@ -101,25 +103,30 @@ class EventLocator {
       }
     }
     std::fill(position_.begin(), position_.end(), 0.0);
-    for (std::size_t i = 0; i < functions_.size(); ++i)
-      if (functions_[i].watch != Watch::off && side_[i] == 0) find_side(view, i, g);
+    find_sides(view, g);
   }
 
   /// The next monitored crossing of the step, in the order of the run; none if there are no more.
   template <class G>
   std::optional<Crossing> next_crossing(const StepView& view, G& g) {
     while (!all_clear_) {
-      std::optional<Candidate> first;
+      std::optional<Candidate> first = first_sampled(view, g);
+      const auto take = [&](const Candidate& candidate) {
+        first = candidate;
+        evaluate(view, first->s, g);
+        crossing_values_ = values_;
+      };
+      if (first) take(*first);
       for (std::size_t i = 0; i < functions_.size(); ++i) {
         if (functions_[i].watch == Watch::off || is_clear_[i]) continue;
-        const std::optional<Candidate> candidate = crossing(view, i, g);
-        if (candidate && (!first || candidate->s < first->s)) first = candidate;
+        const std::optional<Candidate> candidate = crossing(view, i, g, first);
+        if (candidate && (!first || candidate->s < first->s)) take(*candidate);
       }
       if (!first) return std::nullopt;
       for (std::size_t k = 0; k < 2 * functions_.size(); ++k) {
         const std::optional<Candidate> before = find_earlier_crossing(view, *first, g);
         if (!before) break;
-        first = before;
+        take(*before);
       }
       const std::size_t i = first->function;
       side_[i] = -first->side;
@@ -199,6 +206,7 @@ class EventLocator {
   static constexpr double largest_residual = 1e-3;   // of a root, of the same largest value
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
   static constexpr double least_slope = 0.6;  // at the end of a step, relative to the slope before
+  static constexpr std::size_t decades = 12;  // of the first points of a step, at which sides are determined
 
   /// The side from which a function with a direction may be crossed.
   static int inner_side(const EventFunction& f, bool forward) {
@@ -213,38 +221,51 @@ class EventLocator {
   }
   double& sample(std::size_t k, std::size_t i) { return samples_[k * functions_.size() + i]; }
 
+  /// The state at a point of the step; valid until the next call.
+  const double* place(const StepView& view, double s) {
+    if (s <= 0 || s >= 1) return s <= 0 ? view.x0.data() : view.x1.data();
+    view.interpolate(at(view, s), x_);
+    return x_.data();
+  }
+
   template <class G>
   void evaluate(const StepView& view, double s, G& g) {
-    const double* x = view.x0.data();
-    if (s >= 1) {
-      x = view.x1.data();
-    } else if (s > 0) {
-      view.interpolate(at(view, s), x_);
-      x = x_.data();
-    }
-    if (g(at(view, s), x, values_.data()) != 0)
+    if (g(at(view, s), place(view, s), values_.data()) != 0)
       std::fill(values_.begin(), values_.end(), std::numeric_limits<double>::quiet_NaN());
   }
 
   template <class G>
   double value(const StepView& view, double s, std::size_t i, G& g) {
-    evaluate(view, s, g);
-    return values_[i];
+    if constexpr (requires { g.value(s, x_.data(), i); }) {
+      const double* const x = place(view, s);
+      return g.value(at(view, s), x, i);
+    } else {
+      evaluate(view, s, g);
+      return values_[i];
+    }
   }
 
-  /// Determines the side of a function that starts on its surface: that of its first value beyond rounding. A value
+  /// Determines the sides of functions that start on their surfaces: that of the first value beyond rounding. A value
   /// that grows steadily over three decades of time is not rounding, however small it is, if it exceeds those before.
   template <class G>
-  void find_side(const StepView& view, std::size_t i, G& g) {
-    constexpr std::size_t decades = 12;
-    std::array<double, decades> v;
+  void find_sides(const StepView& view, G& g) {
+    std::vector<std::size_t> unknown;
+    for (std::size_t i = 0; i < functions_.size(); ++i)
+      if (functions_[i].watch != Watch::off && side_[i] == 0) unknown.push_back(i);
+    if (unknown.empty()) return;
+    std::vector<std::array<double, decades>> first(unknown.size());
     double s = tolerance;
-    for (double& entry : v) {
-      entry = value(view, s, i, g);
-      s *= 10;
+    for (std::size_t k = 0; k < decades; ++k, s *= 10) {
+      evaluate(view, s, g);
+      for (std::size_t a = 0; a < unknown.size(); ++a) first[a][k] = values_[unknown[a]];
     }
+    for (std::size_t a = 0; a < unknown.size(); ++a) find_side(view, unknown[a], first[a]);
+  }
+
+  /// v: the values of function i at the first points.
+  void find_side(const StepView& view, std::size_t i, const std::array<double, decades>& v) {
     const auto grows = [&](std::size_t k) { return v[k] * v[k + 1] > 0 && std::abs(v[k + 1]) > 3 * std::abs(v[k]); };
-    s = tolerance;
+    double s = tolerance;
     double noise = residual_[i];  // the largest value so far
     for (std::size_t k = 0; k < decades; ++k, s *= 10) {
       const bool is_noise = !(std::abs(v[k]) > 4 * noise);
@@ -284,93 +305,17 @@ class EventLocator {
     return none;
   }
 
-  /// The first crossing after the function's position: by samples, or earlier if the function has bounds that do not
-  /// exclude it.
   template <class G>
-  std::optional<Candidate> crossing(const StepView& view, std::size_t i, G& g) {
-    const std::optional<Candidate> sampled = between_samples(view, i, g);
-    if constexpr (requires { g.hidden_crossing(view, i, 1, 0.0, 1.0); }) {
-      const int side = side_[i];
-      if (side == 0) return sampled;
-      const auto found = g.hidden_crossing(view, i, side, position_[i], sampled ? sampled->s : 1.0);
-      if (!found) return sampled;
-      const auto inward = [&](double s) { return side * value(view, s, i, g); };
-      const double at_right = inward(found->second);
-      if (!(at_right < 0)) return sampled;
-      const double s = root(inward, found->first, found->first == position_[i] ? none : inward(found->first),
-                            found->second, at_right);
-      if (!sampled || s < sampled->s - tolerance) return Candidate{i, s, side};
-    }
-    return sampled;
-  }
-
-  /// The search ends at a point without a value.
+  std::optional<Candidate> first_sampled(const StepView& view, G& g);
   template <class G>
-  std::optional<Candidate> between_samples(const StepView& view, std::size_t i, G& g) {
-    const int side = side_[i];
-    if (side == 0) return std::nullopt;
-    const auto inward = [&](double s) { return side * value(view, s, i, g); };  // positive on the function's side
-    double left = position_[i];
-    double at_left = left == 0 ? side * sample(0, i) : std::numeric_limits<double>::quiet_NaN();
-    for (std::size_t k = 1; k < places.size(); ++k) {
-      const double here = side * sample(k, i);
-      if (places[k] <= left) continue;
-      if (!std::isfinite(here)) break;
-      if (here < 0) return Candidate{i, root(inward, left, at_left, places[k], here), side};
-      if (k + 1 < places.size()) {
-        const events::Point b{left, at_left}, c{places[k], here}, d{places[k + 1], side * sample(k + 1, i)};
-        double dip = k > 1 && places[k - 2] >= position_[i]
-                         ? events::find_dip_of_lines({places[k - 2], side * sample(k - 2, i)}, b, c, d, inward)
-                         : none;
-        if (!std::isfinite(dip)) dip = events::find_dip(inward, left, at_left, places[k], here, d.s, d.value);
-        if (std::isfinite(dip)) return Candidate{i, root(inward, left, at_left, dip, inward(dip)), side};
-      }
-      left = places[k];
-      at_left = here;
-    }
-    return std::nullopt;
-  }
-
-  /// The first of the other functions that has crossed before the given crossing: it is beyond zero there.
+  std::optional<Candidate> crossing(const StepView& view, std::size_t i, G& g, const std::optional<Candidate>& known);
   template <class G>
-  std::optional<Candidate> find_earlier_crossing(const StepView& view, const Candidate& found, G& g) {
-    evaluate(view, found.s, g);
-    crossing_values_ = values_;
-    std::optional<Candidate> first;
-    for (std::size_t i = 0; i < functions_.size(); ++i) {
-      const int side = side_[i];
-      const double there = side * crossing_values_[i];
-      if (i == found.function || is_clear_[i] || functions_[i].watch == Watch::off || !(there < 0) ||
-          !exceeds_rounding(i, there) || position_[i] >= found.s)
-        continue;
-      double left = position_[i], at_left = left == 0 ? side * sample(0, i) : none;
-      for (std::size_t k = 1; k < places.size() && places[k] < found.s; ++k) {
-        if (places[k] > left && side * sample(k, i) > 0) left = places[k], at_left = side * sample(k, i);
-      }
-      const auto inward = [&](double s) { return side * value(view, s, i, g); };
-      const double s = root(inward, left, at_left, found.s, there);
-      if (s < found.s && (!first || s < first->s)) first = Candidate{i, s, side};
-    }
-    return first;
-  }
-
-  /// The root between left (on the function's side, or its last crossing) and right (beyond it).
+  std::optional<Candidate> between_samples(const StepView& view, std::size_t i, G& g,
+                                           const std::optional<Candidate>& known);
+  template <class G>
+  std::optional<Candidate> find_earlier_crossing(const StepView& view, const Candidate& found, G& g);
   template <class F>
-  double root(F& inward, double left, double at_left, double right, double at_right) {
-    if (!(at_left > 0)) {
-      // At the surface up to rounding: takes the first point beyond it that is on the function's side; else the root is
-      // here.
-      double found = std::numeric_limits<double>::quiet_NaN();
-      for (double part = tolerance; part < 1 && !(found > 0); part *= 10) {
-        const double s = left + part * (right - left);
-        const double v = inward(s);
-        if (v > 0) left = s, found = v;
-      }
-      if (!(found > 0)) return left;
-      at_left = found;
-    }
-    return events::find_root(inward, left, at_left, right, at_right, tolerance);
-  }
+  double root(F& inward, double left, double at_left, double right, double at_right);
 
   std::vector<EventFunction> functions_;
   std::vector<int> side_;
@@ -384,3 +329,5 @@ class EventLocator {
 };
 
 }  // namespace eom
+
+#include "eom/events/crossing_search.hpp"  // the members that search for crossings

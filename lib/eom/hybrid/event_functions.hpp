@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -54,6 +55,14 @@ class EventFunctions {
     return 0;
   }
 
+  /// The value of function i; NaN if there is none. The gap of an open contact needs no forces.
+  double value(double t, const double* x, std::size_t i) {
+    if (const std::optional<std::size_t> j = solved_gap(i); j && solved_contacts_->is_open(*j))
+      return solved_contacts_->gap_value(t, x, *j);
+    values_.resize(size());
+    return (*this)(t, x, values_.data()) == 0 ? values_[i] : std::numeric_limits<double>::quiet_NaN();
+  }
+
   Jumps& jumps() { return jumps_; }
 
   std::vector<EventFunction> watched() const {
@@ -93,9 +102,7 @@ class EventFunctions {
   bool is_clear(std::size_t i, int side) {
     if (i < first_contact()) return false;
     const bool clear = is_available(i) && clearance_.is_clear(i, side);
-    if (i >= first_solved_contact() && i < first_jump() &&
-        (i - first_solved_contact()) % SolvedContacts::values_per_contact == 0)
-      solved_contacts_->set_clear((i - first_solved_contact()) / SolvedContacts::values_per_contact, clear);
+    if (const std::optional<std::size_t> j = solved_gap(i)) solved_contacts_->set_clear(*j, clear);
     return clear;
   }
   /// To be called at the start of a run.
@@ -108,6 +115,12 @@ class EventFunctions {
   }
 
  private:
+  /// The contact whose gap, or normal force, function i is; none: it is another function.
+  std::optional<std::size_t> solved_gap(std::size_t i) const {
+    constexpr std::size_t per = SolvedContacts::values_per_contact;
+    if (i < first_solved_contact() || i >= first_jump() || (i - first_solved_contact()) % per != 0) return std::nullopt;
+    return (i - first_solved_contact()) / per;
+  }
   /// Whether function i is available as an expression, in the present modes.
   bool is_available(std::size_t i) const {
     if (model_.mode().charts() != 0) return false;
@@ -122,8 +135,8 @@ class EventFunctions {
   void observe(double t, const double* x) {
     if (!contacts_ && solved_contacts_ == nullptr) return;
     forget_step();
-    observed_.resize(size());
-    (*this)(t, x, observed_.data());
+    values_.resize(size());
+    (*this)(t, x, values_.data());
   }
 
   const Problem& problem_;
@@ -133,7 +146,7 @@ class EventFunctions {
   EventRanges ranges_;
   Jumps jumps_;
   Clearance clearance_;
-  std::vector<double> observed_;
+  std::vector<double> values_;
 };
 
 }  // namespace eom::hybrid

@@ -42,6 +42,7 @@ struct BoundedEvents {
   const Sampling& sampling;
 
   int operator()(double t, const double* x, double* g) const { return of.events(t, x, g); }
+  double value(double t, const double* x, std::size_t i) const { return of.events.value(t, x, i); }
   std::optional<std::pair<double, double>> hidden_crossing(const StepView& step, std::size_t i, int side, double from,
                                                            double to) const {
     return of.events.hidden_crossing(step, i, side, from, to, sampling);
