@@ -8,6 +8,9 @@
 // the solution of the KKT system [M A^T; A 0] (dq, lambda) = (0, -psi). M may be singular if it is positive definite on
 // the null space of A. Directions without mass even there do not move. A column-pivoted QR of A^T detects redundant
 // rows, which are satisfied in the least-squares sense.
+//
+// With many rows the matrix of this formula, that of an earlier state, serves for later ones until Newton's method
+// becomes slow: the corrections are far smaller than the changes of the state.
 #pragma once
 
 #include <Eigen/Dense>
@@ -37,7 +40,8 @@ struct ProjectionResult {
   double velocity_correction = 0;  // largest component of v - v before
 };
 
-/// The method with its work space for n coordinates and m constraints. Allocates in the constructor only.
+/// The method with its work space for n coordinates and m constraints. With fewer than many_rows it allocates in the
+/// constructor only.
 class Projection {
  public:
   using Index = Eigen::Index;
@@ -60,6 +64,12 @@ class Projection {
         correction_(n_),
         before_(2 * n_) {}
 
+  /// From this number of constraints on, matrices are kept from one state to the next.
+  static constexpr Index many_rows = 16;
+
+  /// The constraints are others now.
+  void reset() { positions_.has_inverse = velocities_.has_inverse = false; }
+
   /// All m rows have a psi.
   Projection(std::size_t n, std::size_t m) : Projection(n, m, m) {}
 
@@ -80,7 +90,15 @@ class Projection {
       const int code = mass(t, x, M_.data(), h_.data());
       return code != 0 || M_.allFinite() ? code : code_not_finite;
     };
-    result.code = move_positions(x, evaluate_constraints, evaluate_mass, result);
+    // Nearly dependent rows turn rounding into large corrections, which diverge: the state is moved along fewer
+    // directions then.
+    for (tolerance_ = options_.rank_tolerance;; tolerance_ *= coarser) {
+      result.code = move_positions(x, evaluate_constraints, evaluate_mass, result);
+      if (result.code == 0 || result.iterations == 0 || tolerance_ * coarser > coarsest) break;
+      state = before_;
+      result.iterations = 0;
+      positions_.has_inverse = false;
+    }
     if (result.code == 0) result.code = move_velocities(x, evaluate_constraints, evaluate_mass, result);
     if (result.code != 0) {
       state = before_;
@@ -104,7 +122,9 @@ class Projection {
     Matrix metric;  // Q^T M Q, and the system for the part of the solution in the null space of A
     Vector w;       // the solution in the basis Q
     Eigen::ColPivHouseholderQR<Matrix> metric_qr;
-    Vector length;  // of the rows of A
+    Vector length;   // of the rows of A
+    Matrix inverse;  // with many rows: the correction for each unit defect, in some earlier state
+    bool has_inverse = false;
   };
 
   template <class Constraints, class Mass>
@@ -118,12 +138,18 @@ class Projection {
       if (!psi_.head(rows).allFinite()) return code_not_finite;
       if (psi_small(q, rows)) break;
       if (result.iterations == options_.max_iterations) return ProjectionResult::not_converged;
-      if (result.iterations == 0)  // the metric is that of the initial state
+      defect_.head(rows) = psi_.head(rows);
+      const bool kept = positions_.has_inverse;
+      if (result.iterations == 0 && !kept)  // the metric is that of the initial state
         if (const int code = evaluate_mass(); code != 0) return code;
       ++result.iterations;
-      defect_.head(rows) = psi_.head(rows);
-      const double size = solve(positions_, result);
+      const double size = kept ? correct(positions_) : solve_anew(positions_, result);
       if (!std::isfinite(size)) return code_not_finite;
+      if (kept && size > slow * last && size > options_.tolerance * q.lpNorm<Eigen::Infinity>()) {
+        positions_.has_inverse = false;
+        if (const int code = evaluate_mass(); code != 0) return code;
+        continue;
+      }
       q -= correction_;
       const double scale = q.lpNorm<Eigen::Infinity>();
       if (size <= options_.tolerance * scale) break;
@@ -139,9 +165,20 @@ class Projection {
     Eigen::Map<Vector> v(x + n_, n_);
     if (const int code = evaluate_constraints(); code != 0) return code;
     if (defect_small(v)) return 0;
+    if (positions_.has_inverse && !velocities_.has_inverse && positions_.right.size() == m_)
+      velocities_.inverse = positions_.inverse, velocities_.has_inverse = true;
+    double last = std::numeric_limits<double>::infinity();
+    for (int pass = 0; pass < options_.max_iterations && velocities_.has_inverse; ++pass) {
+      const double size = correct(velocities_);
+      if (!(size <= slow * last)) break;
+      v -= correction_;
+      if (defect_small(v)) return 0;
+      last = size;
+    }
+    if (last <= options_.tolerance * v.lpNorm<Eigen::Infinity>() && met(defect_, m_, v)) return 0;
     if (const int code = evaluate_mass(); code != 0) return code;
     for (int pass = 0; pass < 2; ++pass) {  // the second one removes the rounding of the first
-      if (!std::isfinite(solve(velocities_, result))) return code_not_finite;
+      if (!std::isfinite(solve_anew(velocities_, result))) return code_not_finite;
       v -= correction_;
       if (defect_small(v)) return 0;
     }
@@ -188,13 +225,47 @@ class Projection {
   /// first rows of A_ and defect_, as many as s has. Returns its largest component.
   double solve(Solver& s, ProjectionResult& result) {
     factor_rows(s);
-    const Index rank = rank_of(s.qr, options_.rank_tolerance);
+    const Index rank = rank_of(s.qr, tolerance_);
     result.rank = static_cast<int>(rank);
     solve_range_part(s, rank);
     solve_null_part(s, rank);
     correction_ = s.w;  // correction = Q w
     for (Index k = std::min(n_, s.right.size()); k-- > 0;) reflect(s.qr, k, correction_);
     return correction_.lpNorm<Eigen::Infinity>();
+  }
+
+  /// As solve(). With many rows the inverse is kept.
+  double solve_anew(Solver& s, ProjectionResult& result) {
+    if (s.right.size() < many_rows || !find_inverse(s, result)) return solve(s, result);
+    return correct(s);
+  }
+  /// correction_ by the kept inverse. Returns its largest component.
+  double correct(const Solver& s) {
+    correction_.noalias() = s.inverse * defect_.head(s.right.size());
+    return correction_.lpNorm<Eigen::Infinity>();
+  }
+  /// With M = L L^T and B = A L^-T the correction is L^-T B^+ defect. False: M is not regular.
+  bool find_inverse(Solver& s, ProjectionResult& result) const {
+    constexpr double regular = 1e-7;  // of the largest pivot
+    const Eigen::LLT<Matrix> factors(M_);
+    const Vector pivots = factors.matrixLLT().diagonal();
+    if (factors.info() != Eigen::Success || !(pivots.minCoeff() > regular * pivots.maxCoeff())) return false;
+    Matrix transpose = A_.topRows(s.right.size()).transpose();
+    factors.matrixL().solveInPlace(transpose);
+    for (Index i = 0; i < transpose.cols(); ++i) {
+      const double length = transpose.col(i).norm();
+      s.length(i) = length > 0 ? length : 1;
+      transpose.col(i) /= s.length(i);
+    }
+    Eigen::CompleteOrthogonalDecomposition<Matrix> decomposition;
+    decomposition.setThreshold(tolerance_);
+    decomposition.compute(transpose.transpose());
+    result.rank = static_cast<int>(decomposition.rank());
+    s.inverse = decomposition.pseudoInverse();
+    factors.matrixU().solveInPlace(s.inverse);
+    for (Index i = 0; i < s.inverse.cols(); ++i) s.inverse.col(i) /= s.length(i);
+    s.has_inverse = true;
+    return true;
   }
 
   /// A^T P = Q R with rows of A scaled to length 1. A row of zeros does not change and is redundant.
@@ -295,9 +366,12 @@ class Projection {
     for (Index i = k + 1; i < n; ++i) y(i) -= sum * qr.matrixQR()(i, k);
   }
 
-  static constexpr int code_not_finite = 5;  // as in the C ABI
+  static constexpr int code_not_finite = 5;                // as in the C ABI
+  static constexpr double slow = 0.1;                      // of the correction before: another inverse is needed
+  static constexpr double coarser = 1e3, coarsest = 1e-5;  // tolerances of the rank
 
   ProjectionOptions options_;
+  double tolerance_ = options_.rank_tolerance;  // of the rank, in this projection
   Index n_, m_;
   Solver positions_, velocities_;
   Vector psi_, b_;

@@ -28,6 +28,8 @@ class ConstraintRows {
   std::size_t position_row_count() const { return holonomic_ + gap_rows() + integrals_.size(); }
   /// Contacts whose forces are inputs add rows: their gaps before the integrals, their slip last.
   void set_contacts(SolvedContacts* contacts) { contacts_ = contacts; }
+  /// Differs after each event that may have changed contacts whose forces are inputs.
+  std::size_t changes() const { return contacts_ != nullptr ? contacts_->changed_modes() : 0; }
   /// The active constraint of a row. For a row of an integral or of slip: the number of active constraints.
   std::size_t constraint_of(std::size_t row) const {
     if (row < holonomic_) return order_[row];

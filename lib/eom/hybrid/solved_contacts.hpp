@@ -103,6 +103,7 @@ class SolvedContacts {
     chatter_ = from.chatter;
     thresholds_.restore(from.sizes);
     hits_ = from.hits;
+    forces_.discard_factors();
     end_.reset();
     model_.forget_contact_forces();
   }
@@ -126,7 +127,7 @@ class SolvedContacts {
 
   /// Values of all functions at a state.
   int operator()(double t, const double* x, double* g) {
-    if (const int code = model_.solve_contacts(t, x); code != 0) return code;
+    if (const int code = model_.solve_contacts(t, x, contacts::ForceChoice::admissible); code != 0) return code;
     if (forces_.all_open()) {
       if (const int code = forces_.evaluate_rows(t, x, model_.inputs(t)); code != 0) return code;
     }
@@ -137,10 +138,7 @@ class SolvedContacts {
       if (is_clear_[j]) continue;
       const contacts::Description& at = forces_.contact(j);
       if (!forces_.is_closed(j)) {
-        const double rounding = thresholds_.gap_rounding(j, x);
-        value[0] = forces_.value(at.gap) + rounding;
-        // A contact that separates does not meet, though the error of its place may leave it below the surface.
-        if (value[0] <= 0 && forces_.rate(at.normal) > 0) value[0] = rounding;
+        value[0] = gap_beyond_rounding(j, x);
         continue;
       }
       thresholds_.observe_force(j);
@@ -151,6 +149,15 @@ class SolvedContacts {
     }
     const bool failed = std::any_of(g, g + functions(), [](double value) { return std::isnan(value); });
     return failed ? contacts::ContactForces::code_not_finite : 0;
+  }
+
+  /// The first function of an open contact; NaN if there is no value.
+  double gap_value(double t, const double* x, std::size_t j) {
+    model_.forget_contact_forces();
+    if (forces_.evaluate_rows(t, x, model_.inputs(t)) != 0) return std::numeric_limits<double>::quiet_NaN();
+    if (is_clear_[j]) return 1;
+    thresholds_.observe_contact(j, x);
+    return gap_beyond_rounding(j, x);
   }
 
   /// Called at the start of each step.
@@ -238,6 +245,8 @@ class SolvedContacts {
   }
   double slope(const contacts::Row& row, std::size_t k) const { return forces_.value(row.slope(k)); }
 
+  /// Differs after each access that may change modes.
+  std::size_t changed_modes() const { return forces_.changes(); }
   bool has_closed_contact() const {
     for (std::size_t j = 0; j < size(); ++j)
       if (forces_.contact(j).has_constraint() && forces_.is_closed(j)) return true;
@@ -259,6 +268,13 @@ class SolvedContacts {
  private:
   double sign(std::size_t j) const { return forces_.states()[j].normal_sign; }
   bool has_gap_row(std::size_t j) const { return forces_.contact(j).has_constraint() && forces_.is_closed(j); }
+
+  double gap_beyond_rounding(std::size_t j, const double* x) const {
+    const contacts::Description& at = forces_.contact(j);
+    const double rounding = thresholds_.gap_rounding(j, x), gap = forces_.value(at.gap) + rounding;
+    // A contact that separates does not meet, though the error of its place may leave it below the surface.
+    return gap <= 0 && forces_.rate(at.normal) > 0 ? rounding : gap;
+  }
 
   void set_least_slip(const double* x) {
     const double least = thresholds_.least_slip(x);

@@ -31,6 +31,8 @@ class StateProjection {
     const std::array<std::size_t, 2> shape{rows_.size(), rows_.position_row_count()};
     if (shape != shape_) projection_ = Projection(n_, shape[0], shape[1]);  // contacts opened, closed, stuck or slipped
     shape_ = shape;
+    if (rows_.changes() != changes_) projection_.reset();
+    changes_ = rows_.changes();
     const double before = outputs_.energy(t, x);
     const ProjectionResult moved = projection_(
         t, x,
@@ -70,6 +72,7 @@ class StateProjection {
   Outputs& outputs_;
   std::size_t n_;
   std::array<std::size_t, 2> shape_;  // rows of the projection, and those of positions
+  std::size_t changes_ = 0;           // of the contacts to which the projection belongs
   Projection projection_;
   Corrections largest_;
   double work_ = 0;
