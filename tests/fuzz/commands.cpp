@@ -120,7 +120,7 @@ std::vector<std::string> shipped() {
   std::vector<fs::path> files;
   for (const char* folder : {"models", "tests/fuzz/seeds"}) {
     for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(test::source_folder()) / folder))
-      files.push_back(entry.path());
+      if (entry.is_regular_file()) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) {

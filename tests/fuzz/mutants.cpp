@@ -95,7 +95,8 @@ bool is_number(std::string_view word) { return word.find_first_not_of("012345678
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& path) {
   if (!std::filesystem::is_directory(path)) return {path};
   std::vector<std::filesystem::path> result;
-  for (const auto& entry : std::filesystem::directory_iterator(path)) result.push_back(entry.path());
+  for (const auto& entry : std::filesystem::directory_iterator(path))
+    if (entry.is_regular_file()) result.push_back(entry.path());
   std::sort(result.begin(), result.end());
   return result;
 }

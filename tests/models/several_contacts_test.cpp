@@ -148,6 +148,25 @@ TEST_CASE("disc_pile: six discs come to rest without overlap") {
   CHECK(run.simulation.result.power_balance < 1e-9);
 }
 
+// 137 dependent contacts. The end of the run is not the end of the settling: the weight is that on average.
+TEST_CASE("large/fifty_discs: a disc falls on a pile of forty-nine, which keeps its order") {
+  const FinishedRun run = run_rough("large/fifty_discs");
+  const double R = run.parameter("R"), weight = run.parameter("m") * run.parameter("g");
+  const auto place = [&](int disc) {
+    return Eigen::Vector2d(run.final("x" + std::to_string(disc)), run.final("z" + std::to_string(disc)));
+  };
+  for (int a = 1; a <= 50; ++a) {
+    for (int b = a + 1; b <= 50; ++b) CHECK((place(a) - place(b)).norm() > 2 * R - integration_tolerance);
+    CHECK(place(a)(1) > R - integration_tolerance);
+  }
+  double floor = 0;
+  for (int disc = 1; disc <= 6; ++disc) floor += run.final("reaction.floor" + std::to_string(disc));
+  CHECK(floor == doctest::Approx(50 * weight).epsilon(1e-6));
+  CHECK_FALSE(run.simulation.result.contact_forces_determined);
+  CHECK(run.simulation.result.power_balance < 1e-9);
+  CHECK(events_of(run).size() > 50);
+}
+
 TEST_CASE("woodpecker: it reaches the limit cycle of its published data, with the same events at all tolerances") {
   std::vector<run::RunEvent> first;
   for (const double rtol : {1e-7, 1e-9, 1e-11}) {
