@@ -3,20 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <iterator>
-
-#include "emit/batch/batch.hpp"
-#include "emit/c/c.hpp"
-#include "emit/casadi/casadi.hpp"
-#include "emit/cpp/cpp.hpp"
-#include "emit/cuda/cuda.hpp"
-#include "emit/javascript/javascript.hpp"
-#include "emit/julia/julia.hpp"
-#include "emit/modelica/modelica.hpp"
-#include "emit/octave/octave.hpp"
-#include "emit/python/python.hpp"
-#include "emit/rust/rust.hpp"
 #include "error.hpp"
 #include "lists.hpp"
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Target julia: through Julia if installed, and through an evaluator of its statements (evaluators.py).
 // tests/models/languages_test.cpp compares shipped models with their C code.
-#include "emit/julia/julia.hpp"
-
 #include <doctest/doctest.h>
 
 #include "emit/target_uses.hpp"
+#include "emit/targets.hpp"
 
 using namespace eomgen;
 using namespace test_systems;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Target modelica through an evaluator of its equations (evaluators.py). tests/models/languages_test.cpp compares
 // shipped models with their C code.
-#include "emit/modelica/modelica.hpp"
-
 #include <doctest/doctest.h>
 
 #include "emit/target_uses.hpp"
+#include "emit/targets.hpp"
 
 using namespace eomgen;
 using namespace test_systems;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Target octave through Octave, if installed. tests/models/languages_test.cpp compares shipped models with their C
 // code.
-#include "emit/octave/octave.hpp"
-
 #include <doctest/doctest.h>
 
 #include "emit/examples.hpp"
 #include "emit/single_precision.hpp"
+#include "emit/targets.hpp"
 
 using namespace eomgen;
 using namespace test_systems;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Target rust through rustc, if installed: as a module of a crate without the standard library, and its own test.
 // tests/models/languages_test.cpp compares shipped models with their C code.
-#include "emit/rust/rust.hpp"
-
 #include <doctest/doctest.h>
 
 #include "emit/single_precision.hpp"
 #include "emit/target_uses.hpp"
+#include "emit/targets.hpp"
 
 using namespace eomgen;
 using namespace test_systems;

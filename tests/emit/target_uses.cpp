@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "emit/target_uses.hpp"
 
-#include "emit/julia/julia.hpp"
-#include "emit/modelica/modelica.hpp"
-#include "emit/octave/octave.hpp"
-#include "emit/rust/rust.hpp"
+#include "emit/targets.hpp"
 
 using namespace eomgen;
 

@@ -7,11 +7,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "emit/julia/julia.hpp"
-#include "emit/modelica/modelica.hpp"
-#include "emit/octave/octave.hpp"
-#include "emit/rust/rust.hpp"
 #include "emit/shared_library/process.hpp"
+#include "emit/targets.hpp"
 #include "emit/write_files.hpp"
 #include "models/function_calls.hpp"
 #include "numeric/numbers.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "emit/batch/batch.hpp"
-
+// Target batch: NAME_batch.c and NAME_batch.h in addition to NAME.c and NAME.h. The functions of the C ABI for many
+// states as structures of arrays. States are computed in the lanes of SIMD registers, with the same bits as each state
+// alone.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,12 +10,12 @@
 
 #include "emit/batch/lane_numbers.hpp"
 #include "emit/batch/taylor_lanes.hpp"
-#include "emit/c/c.hpp"
 #include "emit/kernels.hpp"
 #include "emit/metadata.hpp"
 #include "emit/names.hpp"
 #include "emit/parts.hpp"
 #include "emit/signature.hpp"
+#include "emit/targets.hpp"
 #include "emit/text.hpp"
 #include "error.hpp"
 #include "program/internal_functions.hpp"

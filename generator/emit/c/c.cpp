@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "emit/c/c.hpp"
-
+// Target c: NAME.c and NAME.h, the C ABI of docs/abi.md in a C11 subset that C++ compiles too.
 #include <fmt/format.h>
 
 #include "abi/functions.hpp"
@@ -13,6 +12,7 @@
 #include "emit/signature.hpp"
 #include "emit/single_precision.hpp"
 #include "emit/start/start.hpp"
+#include "emit/targets.hpp"
 #include "emit/taylor.hpp"
 #include "emit/text.hpp"
 #include "error.hpp"

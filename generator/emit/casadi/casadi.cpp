@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "emit/casadi/casadi.hpp"
-
+// Target casadi: the C sources, and NAME_casadi.c with functions that CasADi loads by `external`.
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "emit/c/c.hpp"
 #include "emit/metadata.hpp"
+#include "emit/targets.hpp"
 #include "emit/text.hpp"
 #include "error.hpp"
 #include "lists.hpp"

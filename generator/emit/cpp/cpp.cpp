@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "emit/cpp/cpp.hpp"
-
+// Target cpp: NAME.hpp, templates over the scalar type in namespace eom::NAME, and the C sources beside it.
 #include "abi/functions.hpp"
-#include "emit/c/c.hpp"
 #include "emit/cpp/templates.hpp"
 #include "emit/kernels.hpp"
 #include "emit/metadata.hpp"
 #include "emit/self_test.hpp"
 #include "emit/signature.hpp"
+#include "emit/targets.hpp"
 #include "emit/taylor.hpp"
 #include "emit/text.hpp"
 #include "skeletons/cpp_model_hpp.hpp"

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "emit/cuda/cuda.hpp"
-
+// Target cuda: NAME.cuh contains the functions of the ABI as device functions; NAME_ensemble.cu and .h integrate many
+// states on the device. The same text compiles as HIP, and with a plain C++20 compiler.
 #include "emit/cpp/templates.hpp"
 #include "emit/metadata.hpp"
+#include "emit/targets.hpp"
 #include "error.hpp"
 #include "skeletons/cuda_model_cuh.hpp"
 #include "skeletons/cuda_model_ensemble_cu.hpp"

@@ -5,11 +5,11 @@
 
 #include <eom/hybrid/problem.hpp>
 
-#include "emit/c/c.hpp"
 #include "emit/fmu/description.hpp"
 #include "emit/fmu/runtime_sources.hpp"
 #include "emit/fmu/xml.hpp"
 #include "emit/metadata.hpp"
+#include "emit/targets.hpp"
 #include "emit/text.hpp"
 #include "skeletons/fmu_fmi_cpp.hpp"
 #include "skeletons/fmu_icon.hpp"

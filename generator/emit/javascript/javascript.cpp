@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "emit/javascript/javascript.hpp"
-
+// Target javascript: one file, NAME.js, a script for pages and a module for Node.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +14,7 @@
 #include "emit/single_precision.hpp"
 #include "emit/start/start.hpp"
 #include "emit/straight_line.hpp"
+#include "emit/targets.hpp"
 #include "emit/text.hpp"
 #include "emit/uses.hpp"
 #include "error.hpp"

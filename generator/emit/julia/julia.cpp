@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "emit/julia/julia.hpp"
-
+// Target julia: NAME.jl, a module with functions in the form of DifferentialEquations.jl.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -13,6 +12,7 @@
 #include "emit/self_test.hpp"
 #include "emit/signature.hpp"
 #include "emit/single_precision.hpp"
+#include "emit/targets.hpp"
 #include "emit/text.hpp"
 #include "program/internal_functions.hpp"
 #include "skeletons/julia_model_jl.hpp"

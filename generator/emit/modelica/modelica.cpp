@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "emit/modelica/modelica.hpp"
-
+// Target modelica: NAME.mo, a flat model: parameters, inputs, states and their equations in explicit form.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,6 +8,7 @@
 #include "emit/languages/language.hpp"
 #include "emit/metadata.hpp"
 #include "emit/names.hpp"
+#include "emit/targets.hpp"
 #include "emit/text.hpp"
 #include "error.hpp"
 #include "lists.hpp"

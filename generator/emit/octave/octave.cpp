@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "emit/octave/octave.hpp"
-
+// Target octave: NAME.m, a function for Octave and MATLAB that returns the functions and names of the model.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 #include "emit/self_test.hpp"
 #include "emit/signature.hpp"
 #include "emit/single_precision.hpp"
+#include "emit/targets.hpp"
 #include "emit/text.hpp"
 #include "program/internal_functions.hpp"
 #include "skeletons/octave_model_m.hpp"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "emit/python/python.hpp"
-
+// Target python: NAME.py, NAME.c and NAME.h of target c, and the integrator NAME_simulate.c. The module compiles the C
+// code on import. Names, units and defaults are those of NAME_info.
 #include <fmt/format.h>
 
 #include <eom/outcome.hpp>
 
 #include "abi/functions.hpp"
-#include "emit/c/c.hpp"
 #include "emit/metadata.hpp"
+#include "emit/targets.hpp"
 #include "error.hpp"
 #include "skeletons/python_model_py.hpp"
 #include "skeletons/python_run_cpp.hpp"
