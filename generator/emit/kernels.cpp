@@ -3,6 +3,7 @@
 
 #include "emit/metadata.hpp"
 #include "skeletons/kernels_sincos.hpp"
+#include "skeletons/kernels_sincos_generic.hpp"
 #include "skeletons/kernels_sincos_lanes.hpp"
 #include "skeletons/kernels_sincos_lanes_single.hpp"
 
@@ -27,6 +28,10 @@ std::string sincos_kernel(const std::string& prefix, const std::string& linkage,
   values.emplace_back("kept", single ? "FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 16"
                                      : "FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 1 || FLT_EVAL_METHOD == 16");
   return render_template(skeleton::kernels_sincos, values, {});
+}
+
+std::string generic_sincos(const std::string& mark) {
+  return render_template(skeleton::kernels_sincos_generic, {{"mark", mark}}, {});
 }
 
 }  // namespace eomgen::emit

@@ -16,4 +16,8 @@ std::string sincos_kernel(const std::string& prefix, const std::string& linkage,
 std::string sincos_lanes(const std::string& prefix, const std::string& linkage, const std::string& standard,
                          bool single = false);
 
+/// eom_sincos of other types than double, by the functions of the type or of std; `mark`: "", or what a device needs
+/// before it.
+std::string generic_sincos(const std::string& mark);
+
 }  // namespace eomgen::emit

@@ -8,7 +8,6 @@
 #include <eom/modes/contact_state.hpp>
 #include <set>
 
-#include "emit/batch/lane_numbers.hpp"
 #include "emit/batch/taylor_lanes.hpp"
 #include "emit/kernels.hpp"
 #include "emit/metadata.hpp"

@@ -10,37 +10,9 @@
 #include "emit/taylor.hpp"
 #include "emit/text.hpp"
 #include "skeletons/cpp_model_hpp.hpp"
+#include "skeletons/cpp_prepared.hpp"
 
 namespace eomgen::emit {
-namespace {
-
-// Replacement of templates/kernels/sincos for types other than double.
-const std::string generic_sincos = R"(
-template <class Real>
-void eom_sincos(const Real& a, const Real& b, Real* sine, Real* cosine) {
-  using std::cos; using std::sin;
-  sine[0] = sin(a);
-  sine[1] = sin(b);
-  cosine[0] = cos(a);
-  cosine[1] = cos(b);
-}
-)";
-
-const std::string prepared_struct = R"(
-// The right-hand side for given parameters, which must outlive this object. Parameter-only values are computed once.
-template <class Real>
-struct Prepared {
-  explicit Prepared(const Real* parameters) : p(parameters), code(prepare(parameters, w)) {}
-  int operator()(Real t, const Real* x, const Real* u, const int* mode, Real* dx) const {
-    return code != 0 ? code : rhs_prepared(t, x, p, w, u, mode, dx);
-  }
-  const Real* p;
-  Real w[prepared_size];
-  int code;  // of prepare
-};
-)";
-
-}  // namespace
 
 std::vector<EmittedFile> emit_cpp(const program::Program& program, const EmissionContext& context) {
   require_consistent(program, context);
@@ -48,10 +20,10 @@ std::vector<EmittedFile> emit_cpp(const program::Program& program, const Emissio
   const std::string name = mangled_id(context.id);
   const ModelNames names = model_names(program, context);
   const auto [functions, packs] = template_functions(program, names, context, dialect, "");
-  std::string taylor;
+  std::string prepared = program.prepared_count() > 0 ? render_template(skeleton::cpp_prepared, {}, {}) : "";
   if (program.taylor) {
     const TaylorText text = print_taylor(program, names, context, dialect, "");
-    taylor = "\n" + text.definition;
+    prepared += "\n" + text.definition;
   }
   const SelfTestNames test{[](const std::string& f) { return f + "<double>"; }, template_kernel_prefix + "differs",
                            "nullptr"};
@@ -64,9 +36,9 @@ std::vector<EmittedFile> emit_cpp(const program::Program& program, const Emissio
             {"abi", std::to_string(abi::version)},
             {"includes", packs ? "#include <cfloat>\n#include <cmath>\n#include <cstddef>\n#include <cstring>"
                                : "#include <cmath>\n#include <cstddef>"},
-            {"kernels", packs ? generic_sincos + sincos_kernel(template_kernel_prefix, "inline", "std::") : ""},
+            {"kernels", packs ? generic_sincos("") + sincos_kernel(template_kernel_prefix, "inline", "std::") : ""},
             {"enums", index_names(names, program)},
-            {"prepared", (program.prepared_count() > 0 ? prepared_struct : "") + taylor},
+            {"prepared", prepared},
             {"info", string_literal(info_json(program, context), "      ")},
             {"defaults", defaults_body(program, context, dialect)},
             {"comparison", selftest_comparison(context, test, dialect)},

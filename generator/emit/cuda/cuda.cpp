@@ -2,6 +2,7 @@
 // Target cuda: NAME.cuh contains the functions of the ABI as device functions; NAME_ensemble.cu and .h integrate many
 // states on the device. The same text compiles as HIP, and with a plain C++20 compiler.
 #include "emit/cpp/templates.hpp"
+#include "emit/kernels.hpp"
 #include "emit/metadata.hpp"
 #include "emit/targets.hpp"
 #include "error.hpp"
@@ -13,18 +14,6 @@ namespace eomgen::emit {
 namespace {
 
 const std::string mark = "EOM_DEVICE inline ";
-
-// GPU compilers merge the sine and the cosine of an angle into one call.
-const std::string sincos = R"(
-template <class Real>
-EOM_DEVICE inline void eom_sincos(const Real& a, const Real& b, Real* sine, Real* cosine) {
-  using std::cos; using std::sin;
-  sine[0] = sin(a);
-  sine[1] = sin(b);
-  cosine[0] = cos(a);
-  cosine[1] = cos(b);
-}
-)";
 
 /// Features that an integration without events and projection ignores, as lines of a comment.
 std::string passed_over(const program::Program& program) {
@@ -72,7 +61,7 @@ std::vector<EmittedFile> emit_cuda(const program::Program& program, const Emissi
       {"banner", about},
       {"name", name},
       {"enums", index_names(names, program)},
-      {"kernels", packs ? sincos : ""},
+      {"kernels", packs ? generic_sincos(mark) : ""},  // GPU compilers merge the two functions of an angle
       {"defaults", defaults_body(program, context, dialect)}};
   const std::vector<std::pair<std::string, std::string>> of_header = {
       {"banner", banner(program, context, "/* ", " * ", " */")}, {"name", name}, {"passed_over", passed_over(program)}};

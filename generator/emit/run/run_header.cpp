@@ -14,6 +14,7 @@
 #include "emit/metadata.hpp"
 #include "emit/text.hpp"
 #include "skeletons/cpp_run_hpp.hpp"
+#include "skeletons/cpp_set_start.hpp"
 
 namespace eomgen::emit {
 namespace {
@@ -270,36 +271,6 @@ std::string rows_text(const RunDescription& run) {
                      run.rows);
 }
 
-/// NAME_set_start, if the file has NAME_start.
-std::string start_code(const EmissionContext& context, const std::string& name) {
-  if (!context.start_functions) return "";
-  return fmt::format(R"(
-/// Sets the parameters, initial values and times that `given` names (null: none), and all that follows from them. The
-/// arguments and the code are those of {0}_start; unless the code is 0, nothing is set.
-inline int {0}_set_start(eom::hybrid::Problem& problem, const int* given, const double* t, const double* x,
-                         const double* p) {{
-  double times[2] = {{0, 0}};
-  std::vector<double> state({0}_states + 1), parameters({0}_parameters + 1);
-  if (given != nullptr) {{
-    std::copy_n(t, 2, times);
-    std::copy_n(x, {0}_states + 0, state.begin());
-    std::copy_n(p, {0}_parameters + 0, parameters.begin());
-  }}
-  int mode[{0}_mode_size + 1];
-  const int code = {0}_start(given, times, state.data(), parameters.data(), mode);
-  if (code != 0) return code;
-  problem.t0 = times[0];
-  problem.t1 = times[1];
-  std::copy_n(state.begin(), problem.start.size(), problem.start.begin());
-  std::copy_n(parameters.begin(), problem.parameters.size(), problem.parameters.begin());
-  {0}_set_open(problem, mode);
-  {0}_set_rows(problem);
-  return 0;
-}}
-)",
-                     name);
-}
-
 }  // namespace
 
 std::vector<EmittedFile> emit_run_header(const program::Program& program, const EmissionContext& context) {
@@ -321,7 +292,7 @@ std::vector<EmittedFile> emit_run_header(const program::Program& program, const 
             {"problem", problem_text(*context.run)},
             {"names", used_names(problem)},
             {"rows", rows_text(*context.run)},
-            {"start", start_code(context, name)},
+            {"start", context.start_functions ? render_template(skeleton::cpp_set_start, {{"name", name}}, {}) : ""},
             {"columns", wrapped(fmt::format("  return {};", text(context.run->columns)), "      ")}},
            {})}};
 }

@@ -5,7 +5,6 @@
 #include "emit/shared_library/build.hpp"
 
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <optional>
