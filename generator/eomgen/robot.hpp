@@ -7,18 +7,9 @@
 #include <string>
 #include <vector>
 
-namespace eomgen {
+#include "eomgen/results.hpp"
 
-/// As the options of `eomgen import`.
-struct RobotOptions {
-  bool floating = false;                    // the root link moves freely
-  std::string attitude = "euler";           // of free links: euler, euler_parameters
-  std::string friction = "smooth";          // of joints: smooth, dry, none
-  std::string actuators = "transmissions";  // joints with an input: transmissions, all, none
-  std::vector<std::string> stops;           // joints whose limits are end stops
-  bool parameters = false;                  // masses, centres, tensors, damping, friction as parameters
-  bool exact_angles = false;                // decimals of multiples of pi/12 stay decimals
-};
+namespace eomgen {
 
 /// An element of the robot file that has no meaning in a model, and the line of its first occurrence.
 struct RobotOmission {

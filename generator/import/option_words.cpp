@@ -42,12 +42,16 @@ auto parse(const std::string& option, const std::string& text, const Words& word
 
 }  // namespace
 
-Attitude attitude_named(const std::string& option, const std::string& word) { return parse(option, word, attitudes); }
-FrictionLaw friction_named(const std::string& option, const std::string& word) {
-  return parse(option, word, frictions);
-}
-Actuation actuation_named(const std::string& option, const std::string& word) {
-  return parse(option, word, actuations);
+ImportOptions import_options(const RobotOptions& options, const std::string& prefix) {
+  ImportOptions result;
+  result.floating = options.floating;
+  result.attitude = parse(prefix + "attitude", options.attitude, attitudes);
+  result.friction = parse(prefix + "friction", options.friction, frictions);
+  result.actuation = parse(prefix + "actuators", options.actuators, actuations);
+  result.stops = options.stops;
+  result.parameters = options.parameters;
+  result.exact_angles = options.exact_angles;
+  return result;
 }
 
 std::vector<std::string> attitude_words() { return texts_of(attitudes); }

@@ -6,13 +6,12 @@
 #include <vector>
 
 #include "import/import.hpp"
+#include "results.hpp"
 
 namespace eomgen::import {
 
-// Each throws Error with the possible words. `option`: as the user writes it.
-Attitude attitude_named(const std::string& option, const std::string& word);
-FrictionLaw friction_named(const std::string& option, const std::string& word);
-Actuation actuation_named(const std::string& option, const std::string& word);
+/// Throws Error with the possible words. `prefix`: what the user writes before the name of an option.
+ImportOptions import_options(const RobotOptions& options, const std::string& prefix = "");
 
 std::vector<std::string> attitude_words();
 std::vector<std::string> friction_words();

@@ -12,22 +12,9 @@
 namespace eomgen::cli::import_command {
 namespace {
 
-struct Options {
-  std::string file, out, attitude = "euler", friction = "smooth", actuators = "transmissions";
-  bool floating = false, parameters = false, exact_angles = false;
-  std::vector<std::string> stops;
+struct Options : RobotOptions {
+  std::string file, out;
 };
-
-import::ImportOptions import_options(const Options& options){import::ImportOptions result;
-result.floating = options.floating;
-result.attitude = import::attitude_named("--attitude", options.attitude);
-result.friction = import::friction_named("--friction", options.friction);
-result.actuation = import::actuation_named("--actuators", options.actuators);
-result.stops = options.stops;
-result.parameters = options.parameters;
-result.exact_angles = options.exact_angles;
-return result;
-}  // namespace
 
 Json to_document(const import::ImportedModel& model, const Options& options) {
   const auto left_out = [](const import::Finding& finding) -> Json {
@@ -56,7 +43,7 @@ Json to_document(const import::ImportedModel& model, const Options& options) {
 int execute(const Options& options, const CommonOptions& common) {
   const bool has_file = !options.out.empty() && !is_standard_output(options.out);
   if (has_file) require_writable_targets({{"--out", options.out, ".toml"}}, options.file, common.json);
-  const import::ImportedModel model = import::import_file(options.file, import_options(options));
+  const import::ImportedModel model = import::import_file(options.file, import::import_options(options, "--"));
   for (const import::Finding& finding : model.findings.entries())
     print_message(format_warning(
         {finding.first,
@@ -79,7 +66,7 @@ int execute(const Options& options, const CommonOptions& common) {
   return 0;
 }
 
-}  // namespace eomgen::cli::import_command
+}  // namespace
 
 Execute declare(Arguments& app) {
   auto options = std::make_shared<Options>();
