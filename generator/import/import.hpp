@@ -43,13 +43,17 @@ struct ImportedModel {
 struct Robot;
 struct Element;
 
+/// From the root element. Throws Error for wrong values; links and joints are not yet compared with one another.
+using ReadRobot = Robot(const Element& root, const ImportOptions& options);
+
 /// A format of robot files. Each has one file, and one line in registry.cpp.
 struct Format {
   const char* name;
   const char* title;
   const char* root;  // the name of the root element
-  Robot (*read)(const Element& root, const ImportOptions& options);
+  ReadRobot* read;
 };
+ReadRobot read_urdf, read_mjcf;  // the latter throws Error for --floating: the file states which bodies are free
 std::span<const Format> formats();
 
 /// Reads a robot file and writes it as a model. The format is that of the root element. Throws Error.

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/mjcf.hpp"
-
+// MJCF, the XML format of MuJoCo. Its bodies are nested, and a body may have several joints, none of which has to be at
+// its origin.
+// In: <mujoco> with <compiler>, <default>, <option>, <worldbody>, <actuator>, <equality>. Out: Robot; the rest is in
+// its findings.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "import/import.hpp"
 #include "import/mjcf_drives.hpp"
 #include "import/mjcf_geoms.hpp"
 #include "import/mjcf_settings.hpp"

@@ -3,11 +3,25 @@
 // a [[frame]]. Positions start at the origin of the link before, so that the formulations over trees find the tree.
 #pragma once
 
+#include <set>
+#include <string>
+#include <string_view>
+
 #include "import/assembly.hpp"
 #include "import/import.hpp"
-#include "import/names.hpp"
 
 namespace eomgen::import {
+
+/// Names of links and joints as legal names of a model, each once.
+class Names {
+ public:
+  /// A legal name that nothing else has: `wanted` if it is one; else illegal characters become underscores, and
+  /// `suffix` or a number is appended. Reserves it.
+  std::string claim(std::string_view wanted, std::string_view suffix);
+
+ private:
+  std::set<std::string, std::less<>> taken_;
+};
 
 /// Expressions in the model language, with names of links and joints.
 class ModelWriter {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <array>
 
-#include "import/mjcf.hpp"
-#include "import/urdf.hpp"
+#include "import/import.hpp"
+#include "import/robot.hpp"
 
 namespace eomgen::import {
 

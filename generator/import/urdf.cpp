@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "import/urdf.hpp"
-
+// URDF, the Unified Robot Description Format. liburdfdom, its reference reader, gives no lines of the file and reports
+// errors on a log of its own, so the file is read here on an XML library.
+// In: <robot> with <link>, <joint>, <transmission>. Out: Robot; the rest is in its findings.
 #include <fmt/format.h>
 
 #include <cmath>
 #include <map>
 
+#include "import/import.hpp"
+#include "import/robot.hpp"
+#include "import/xml.hpp"
 #include "model/names.hpp"
 
 namespace eomgen::import {
