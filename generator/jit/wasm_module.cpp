@@ -46,14 +46,9 @@ void append_section(Bytes& to, unsigned char kind, const Bytes& content) {
 
 void Code::op(Op op) { bytes_.push_back(static_cast<unsigned char>(op)); }
 
-void Code::get(std::uint32_t local) {
-  bytes_.push_back(0x20);
-  append_unsigned(bytes_, local);
-}
-
-void Code::set(std::uint32_t local) {
-  bytes_.push_back(0x21);
-  append_unsigned(bytes_, local);
+void Code::indexed(unsigned char op, std::uint32_t index) {
+  bytes_.push_back(op);
+  append_unsigned(bytes_, index);
 }
 
 void Code::load(Op op, std::uint32_t offset) {
@@ -61,8 +56,6 @@ void Code::load(Op op, std::uint32_t offset) {
   append_unsigned(bytes_, op == Op::i32_load ? 2 : 3);  // log2 of the alignment
   append_unsigned(bytes_, offset);
 }
-
-void Code::store(Op op, std::uint32_t offset) { load(op, offset); }
 
 void Code::integer(std::uint32_t value) {
   bytes_.push_back(0x41);
@@ -100,24 +93,8 @@ void Code::end() {
   --depth_;
 }
 
-void Code::leave(std::uint32_t block) {
-  bytes_.push_back(0x0c);
-  append_unsigned(bytes_, depth_ - 1 - block);
-}
-
-void Code::branch_if(std::uint32_t depth) {
-  bytes_.push_back(0x0d);
-  append_unsigned(bytes_, depth);
-}
-
-void Code::call(std::uint32_t function) {
-  bytes_.push_back(0x10);
-  append_unsigned(bytes_, function);
-}
-
 void Code::call_indirect(std::uint32_t type) {
-  bytes_.push_back(0x11);
-  append_unsigned(bytes_, type);
+  indexed(0x11, type);
   bytes_.push_back(0);  // the table
 }
 

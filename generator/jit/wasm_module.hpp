@@ -58,10 +58,10 @@ using Bytes = std::vector<unsigned char>;
 class Code {
  public:
   void op(Op op);
-  void get(std::uint32_t local);
-  void set(std::uint32_t local);
-  void load(Op op, std::uint32_t offset);   // pops an address
-  void store(Op op, std::uint32_t offset);  // pops an address and a value
+  void get(std::uint32_t local) { indexed(0x20, local); }
+  void set(std::uint32_t local) { indexed(0x21, local); }
+  void load(Op op, std::uint32_t offset);                        // pops an address
+  void store(Op op, std::uint32_t offset) { load(op, offset); }  // pops an address and a value
   void integer(std::uint32_t value);
   void number(double value);
   void sign_bit();  // the integer of 64 bits whose first bit alone is set
@@ -70,15 +70,17 @@ class Code {
   void begin_else();
   void end();
   /// Branches to the end of an open block: 0 is the function, 1 the outermost block in it.
-  void leave(std::uint32_t block);
+  void leave(std::uint32_t block) { indexed(0x0c, depth_ - 1 - block); }
   /// Pops a condition, and branches to the end of an open block, numbered from the innermost.
-  void branch_if(std::uint32_t depth);
-  void call(std::uint32_t function);
+  void branch_if(std::uint32_t depth) { indexed(0x0d, depth); }
+  void call(std::uint32_t function) { indexed(0x10, function); }
   void call_indirect(std::uint32_t type);  // pops the number of the function in the table
 
   const Bytes& bytes() const { return bytes_; }
 
  private:
+  void indexed(unsigned char op, std::uint32_t index);
+
   Bytes bytes_;
   std::uint32_t depth_ = 1;  // open blocks, with the function
 };
