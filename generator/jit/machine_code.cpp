@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "jit/machine_code.hpp"
 
-#include <algorithm>
 #include <deque>
 #include <eom/modes/mode_array.hpp>
 #include <map>
