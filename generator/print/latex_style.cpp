@@ -130,12 +130,7 @@ class LatexStyle final : public Style {
     const std::string of = inside.precedence < Piece::product ? bracket(inside.text) : inside.text;
     return {"\\int_{t_{0}}^{t} " + of + "\\,dt", Piece::product};
   }
-  Piece differential(const Piece& a) const override { return {"d" + a.text, Piece::atom}; }
   std::string bracket(const std::string& inside) const override { return in_brackets(inside); }
-  std::string plus() const override { return " + "; }
-  std::string minus() const override { return " - "; }
-  std::string leading_minus() const override { return "-"; }
-  std::string equals() const override { return " = "; }
   std::string at_least() const override { return " \\ge "; }
   std::string comma() const override { return ",\\quad "; }
   std::string lay_out(const std::vector<std::string>& pieces, const std::vector<PieceStart>& starts) const override {

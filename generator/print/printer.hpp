@@ -50,12 +50,12 @@ class Style {
   virtual Piece dotted(const Piece& base, int dots) const = 0;
   virtual Piece dot_product(const Piece& a, const Piece& b) const = 0;
   virtual Piece integral(const Piece& inside) const = 0;  // over time, from the start of the run
-  virtual Piece differential(const Piece& a) const = 0;
+  virtual Piece differential(const Piece& a) const { return {"d" + a.text, Piece::atom}; }
   virtual std::string bracket(const std::string& inside) const = 0;
-  virtual std::string plus() const = 0;
-  virtual std::string minus() const = 0;  // between terms
-  virtual std::string leading_minus() const = 0;
-  virtual std::string equals() const = 0;
+  virtual std::string plus() const { return " + "; }
+  virtual std::string minus() const { return " - "; }  // between terms
+  virtual std::string leading_minus() const { return "-"; }
+  virtual std::string equals() const { return " = "; }
   virtual std::string at_least() const = 0;
   virtual std::string comma() const = 0;
   /// Lays out a formula from its top-level pieces. Long formulas are broken into lines or elements. `starts[i]`: the

@@ -76,12 +76,7 @@ class TextStyle final : public Style {
   }
   Piece dot_product(const Piece& a, const Piece& b) const override { return {a.text + " . " + b.text, Piece::product}; }
   Piece integral(const Piece& inside) const override { return {"integral(" + inside.text + ")", Piece::call}; }
-  Piece differential(const Piece& a) const override { return {"d" + a.text, Piece::atom}; }
   std::string bracket(const std::string& inside) const override { return "(" + inside + ")"; }
-  std::string plus() const override { return " + "; }
-  std::string minus() const override { return " - "; }
-  std::string leading_minus() const override { return "-"; }
-  std::string equals() const override { return " = "; }
   std::string at_least() const override { return " >= "; }
   std::string comma() const override { return ", "; }
   std::string lay_out(const std::vector<std::string>& pieces, const std::vector<PieceStart>&) const override {
