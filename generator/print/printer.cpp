@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "lists.hpp"
-#include "print/shortener.hpp"
 #include "symbolic/functions.hpp"
 
 namespace eomgen::print {
@@ -17,6 +16,56 @@ namespace {
 using reading::Formula;
 using reading::FormulaKind;
 using reading::Op;
+
+/// Abbreviation of terms that are too long for a line. Lines break between terms, never within roots or fractions.
+class Shortener {
+ public:
+  /// `text`: prints a term. `fits`: whether that text fits on a line.
+  Shortener(std::function<std::string(const reading::Formula&)> text, std::function<bool(const std::string&)> fits)
+      : text_(std::move(text)), fits_(std::move(fits)) {}
+
+  bool fits(const reading::Formula& term) const { return fits_(text_(term)); }
+
+  /// Replaces the longest sums within the term by S_1, S_2, ... until it fits.
+  Formula operator()(Formula term) {
+    while (!fits(term)) {
+      Formula* longest = nullptr;
+      std::size_t length = 0;
+      const std::function<void(Formula&)> visit = [&](Formula& f) {
+        if (f.kind == FormulaKind::sum) {
+          const std::size_t here = text_(f).size();
+          if (here > length) longest = &f, length = here;
+          return;
+        }
+        for (Formula& arg : f.args) visit(arg);
+      };
+      visit(term);
+      if (!longest) break;
+      *longest = name_of(*longest);
+    }
+    return term;
+  }
+
+  /// The abbreviated sums so far; S_1 is the first.
+  const std::vector<reading::Formula>& definitions() const { return definitions_; }
+  static Formula abbreviation(std::size_t index) {
+    return reading::mark("cal S", {reading::number(static_cast<long>(index) + 1)});
+  }
+
+ private:
+  Formula name_of(const Formula& sum) {
+    const std::string text = text_(sum);
+    const auto known = std::find(texts_.begin(), texts_.end(), text);
+    const auto index = static_cast<std::size_t>(known - texts_.begin());
+    if (known == texts_.end()) texts_.push_back(text), definitions_.push_back(sum);
+    return abbreviation(index);
+  }
+
+  std::function<std::string(const reading::Formula&)> text_;
+  std::function<bool(const std::string&)> fits_;
+  std::vector<reading::Formula> definitions_;
+  std::vector<std::string> texts_;  // texts of the sums: equal sums share a name
+};
 
 /// 9.81 instead of 981/100: fractions with denominators from 100 on that end within four decimals; otherwise nothing.
 std::optional<std::string> as_decimal(const reading::Rational& value, long least_denominator = 100) {
