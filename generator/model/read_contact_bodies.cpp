@@ -13,7 +13,7 @@ bool ContactsReader::touches_body(const Value& on) {
   return symbol != nullptr && symbol->frame > 0;
 }
 
-// The geometry is right for all positions by its construction (contact_nearest.hpp). Obstacles are at rest.
+// The geometry is right for all positions by its construction (contact_shapes.hpp). Obstacles are at rest.
 std::string ContactsReader::nearest_points(BodyContact& contact, const Value& table,
                                            std::map<std::string, TypedNode>& local) {
   const Value& on = *table.find("on");

@@ -206,7 +206,7 @@ TypedNode Resolver::initial(const Syntax& syntax, const SyntaxNode& node) {
     Parameter start;
     start.initial_value_of = coordinate;
     start.name =
-        "initial_" + model_.coordinates[coordinate].name;  // made unlike any other name at the end (start_time.hpp)
+        "initial_" + model_.coordinates[coordinate].name;  // made unlike any other name at the end (reader.cpp)
     start.value = number(0, node.span).node;
     start.used = true;
     start.span = node.span;

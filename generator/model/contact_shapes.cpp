@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "model/contact_nearest.hpp"
-
-#include <fmt/format.h>
+#include "model/contact_shapes.hpp"
 
 namespace eomgen::model {
 namespace {
