@@ -5,13 +5,152 @@
 
 #include <algorithm>
 #include <cmath>
+#include <eom/hybrid/samples.hpp>
 #include <utility>
 
 #include "bench/bench.hpp"
 #include "error.hpp"
 #include "lists.hpp"
+#include "numeric/elimination.hpp"
+#include "numeric/numbers.hpp"
+#include "symbolic/calculus.hpp"
+#include "symbolic/evaluate.hpp"
 
 namespace eomgen::analysis {
+
+using cln::cl_F;
+using cln::cl_R;
+using symbolic::Ref;
+using symbolic::Symbol;
+using symbolic::SymbolKind;
+
+ImpulseInDigits::ImpulseInDigits(const system::EquationSystem& system, const std::vector<double>& parameters)
+    : system_(system), parameters_(parameters) {
+  symbolic::Dag& dag = *system.dag;
+  const Ref lagrangian = dag.sub(system.kinetic, system.potential);
+  for (const std::uint32_t q : system.free)
+    momenta_.push_back(symbolic::partial_derivative(dag, {SymbolKind::coordinate, q, 1})(lagrangian));
+}
+
+std::vector<cl_R> ImpulseInDigits::values(const std::vector<Ref>& roots, const cl_R& t, const std::vector<double>& u,
+                                          const std::vector<cl_F>& x, int digits) const {
+  const std::size_t n = system_.free.size();
+  const auto at = [&](const Symbol& symbol) -> cl_R {
+    switch (symbol.kind) {
+      case SymbolKind::time: return t;
+      case SymbolKind::parameter: return numeric::exact(parameters_[symbol.index]);
+      case SymbolKind::input: return numeric::exact(u[symbol.index]);
+      case SymbolKind::branch: return 0;
+      case SymbolKind::coordinate: {
+        const auto place = std::find(system_.free.begin(), system_.free.end(), symbol.index) - system_.free.begin();
+        return x.at(static_cast<std::size_t>(place) + (symbol.order == 1 ? n : 0));
+      }
+      case SymbolKind::state:
+      case SymbolKind::integral:
+        for (std::size_t i = 0; i < system_.states.size(); ++i) {
+          if (system_.states[i].symbol == symbol) return x.at(system_.layout().first_order_begin() + i);
+        }
+        break;
+      default: break;
+    }
+    throw Error("bench", {}, "an impulse depends on a quantity that has no value in many digits",
+                "shorten the run (--t-end) to before it", ErrorKind::numerical);
+  };
+  return symbolic::evaluate(*system_.dag, roots, at, digits);
+}
+
+void ImpulseInDigits::apply(const Kink& kink, std::vector<cl_F>& x, int digits) const {
+  std::vector<cl_R> impulse = values(momenta_, numeric::exact(kink.before), kink.u_before, x, digits);
+  const std::vector<cl_R> behind = values(momenta_, numeric::exact(kink.behind), kink.u_behind, x, digits);
+  for (std::size_t i = 0; i < impulse.size(); ++i) impulse[i] = impulse[i] - behind[i];
+  change(impulse, numeric::exact(kink.behind), kink.u_behind, x, digits);
+}
+
+void ImpulseInDigits::make_consistent(const cl_R& t, const std::vector<double>& u, std::vector<cl_F>& x,
+                                      int digits) const {
+  if (!system_.active.empty()) change(std::vector<cl_R>(system_.free.size(), 0), t, u, x, digits);
+}
+
+void ImpulseInDigits::change(const std::vector<cl_R>& impulse, const cl_R& t, const std::vector<double>& u,
+                             std::vector<cl_F>& x, int digits) const {
+  const std::size_t n = system_.free.size(), m = system_.active.size();
+  const std::vector<cl_R> M = values(system_.M, t, u, x, digits), A = values(system_.A, t, u, x, digits),
+                          b = values(system_.b, t, u, x, digits);
+  // (M  -A^T) (qdot+ - qdot-)   (impulse       )
+  // (A   0  ) (   Lambda     ) = (-b+ - A qdot- )
+  numeric::Matrix<cl_R> K(n + m, n + m), right(n + m, 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) K(i, j) = M[i * n + j];
+    right(i, 0) = impulse[i];
+  }
+  for (std::size_t k = 0; k < m; ++k) {
+    right(n + k, 0) = -b[k];
+    for (std::size_t j = 0; j < n; ++j) {
+      K(n + k, j) = A[k * n + j];
+      K(j, n + k) = -A[k * n + j];
+      right(n + k, 0) = right(n + k, 0) - A[k * n + j] * x[n + j];
+    }
+  }
+  const numeric::Elimination<cl_R> factors(std::move(K), 0);
+  if (factors.rank() < n + m) {
+    throw Error("bench", {}, "an impulse is not determined: the constraints depend on one another there",
+                "shorten the run (--t-end) to before it", ErrorKind::numerical);
+  }
+  const numeric::Matrix<cl_R> change = factors.solve(right);
+  for (std::size_t i = 0; i < n; ++i) x[n + i] = x[n + i] + cln::cl_float(change(i, 0), cln::float_format(x[n + i]));
+}
+
+ResetsInDigits::ResetsInDigits(const program::Program& program, const system::EquationSystem& system,
+                               const ImpulseInDigits& impulses, const run::RunRequest& request)
+    : system_(system), impulses_(impulses), request_(request) {
+  for (const program::Function& function : program.functions) {
+    if (function.name == "events") events_ = &function;
+    if (function.name == "resets") resets_ = &function;
+  }
+}
+
+cl_F ResetsInDigits::event_value(std::size_t event, const Point& at) const { return values(*events_, at)[event]; }
+
+void ResetsInDigits::apply_event(std::size_t event, Point& at) const {
+  apply(request_.events[event].reset, request_.events[event].name, at);
+}
+
+void ResetsInDigits::apply_sample(std::size_t sample, std::int64_t k, Point& at) const {
+  const eom::hybrid::Sample& taken = request_.samples[sample];
+  for (const eom::hybrid::Noise& noise : taken.noise)
+    at.x[noise.component] =
+        cln::cl_float(numeric::exact(eom::hybrid::random_number(noise, k)), cln::float_format(at.t));
+  apply(taken.reset, taken.name, at);
+}
+
+std::vector<cl_F> ResetsInDigits::values(const program::Function& function, const Point& at) const {
+  program::Arguments<cl_R> arguments;
+  arguments.t = at.t;
+  arguments.x.assign(at.x.begin(), at.x.end());
+  for (const double p : request_.scene.parameters) arguments.p.push_back(numeric::exact(p));
+  for (const double u : at.u) arguments.u.push_back(numeric::exact(u));
+  std::vector<cl_F> result;
+  const program::Values<cl_R> found = program::interpret(function, arguments, at.digits);
+  for (const cl_R& value : found.results[0]) result.push_back(cln::cl_float(value, cln::float_format(at.t)));
+  return result;
+}
+
+void ResetsInDigits::apply(const eom::hybrid::Reset& reset, const std::string& name, Point& at) const {
+  if (reset.set.empty()) return;
+  const std::vector<cl_F> r = values(*resets_, at);
+  if (reset.condition && cln::zerop(r[*reset.condition])) return;
+  const std::size_t n = system_.free.size();
+  bool moves = false;
+  for (const eom::hybrid::Reset::Entry& entry : reset.set) {
+    if (entry.component < n && !system_.active.empty())
+      throw Error("bench", {}, fmt::format("'{}' moves coordinates that are subject to constraints", name),
+                  "eomgen run gives an error_estimate");
+    moves = moves || entry.component < system_.layout().first_order_begin();
+    at.x[entry.component] = r[entry.value];
+  }
+  if (moves) impulses_.make_consistent(at.t, at.u, at.x, at.digits);
+}
+
 namespace {
 
 constexpr double trial_agreement = 1e-5;  // of the ends of the reference and of the run that it follows

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string_view>
 #include <vector>
 
@@ -14,7 +15,6 @@
 #include "analysis/drawing/placed_solids.hpp"
 #include "analysis/drawing/sketch.hpp"
 #include "analysis/drawing/surfaces_at_start.hpp"
-#include "analysis/drawing/wheels.hpp"
 #include "error.hpp"
 #include "lists.hpp"
 #include "reading/reading.hpp"
@@ -24,6 +24,68 @@ namespace eomgen::analysis {
 namespace {
 
 using Weight = Sketch::Weight;
+
+/// Drawing of two coupled wheels with parallel axes: pitch circles, and the belt over them. The page of `report` draws
+/// the same (templates/report/shapes.js). External gears rotate in opposite directions and touch between the centres. A
+/// gear in a ring gear, both on a carrier, touches outside the centres. Pulleys take the radii of disks drawn on the
+/// two bodies, otherwise a size at which the belt is visible.
+struct WheelPair {
+  std::array<Point, 2> centres, axes;
+  double ratio = 1;                          // first angular velocity over the second, about these axes
+  bool carried = false;                      // both rotate on a third body
+  std::array<std::vector<double>, 2> radii;  // of the disks drawn on them
+};
+
+constexpr int strokes = 40;  // per circle
+
+struct Wheels {
+  bool belt = false;
+  std::array<double, 2> radii{};
+};
+
+std::optional<Wheels> wheels_of(double ratio, bool carried, double distance,
+                                const std::array<std::vector<double>, 2>& drawn) {
+  const double size = std::abs(ratio);
+  if (!(distance > 0) || !(size > 0) || !std::isfinite(size)) return std::nullopt;
+  if (ratio < 0) return Wheels{false, {distance / (1 + size), distance * size / (1 + size)}};
+  if (carried) {
+    if (size == 1) return std::nullopt;
+    return Wheels{false, {distance / std::abs(size - 1), distance * size / std::abs(size - 1)}};
+  }
+  for (const double a : drawn[0]) {
+    for (const double b : drawn[1]) {
+      if (std::abs(b - size * a) < 1e-6 * b) return Wheels{true, {a, b}};
+    }
+  }
+  const double larger = 0.3 * distance;
+  return size > 1 ? Wheels{true, {larger / size, larger}} : Wheels{true, {larger, larger * size}};
+}
+
+/// Draws nothing if the axes are not parallel or no such wheels exist.
+void draw(Sketch& sketch, const WheelPair& pair) {
+  const Point axis = pair.axes[0].normalized(), other = pair.axes[1].normalized();
+  if (!axis.allFinite() || !(axis.cross(other).norm() < 1e-6)) return;
+  const Point between = pair.centres[1] - pair.centres[0], across = between - axis.dot(between) * axis;
+  const std::optional<Wheels> found =
+      wheels_of(axis.dot(other) < 0 ? -pair.ratio : pair.ratio, pair.carried, across.norm(), pair.radii);
+  if (!found) return;
+  const Point u = across.normalized(), v = axis.cross(u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    std::vector<PlanePoint> ring;
+    for (int s = 0; s <= strokes; ++s) {
+      const double angle = 2 * std::numbers::pi * s / strokes;
+      ring.push_back(sketch.on_paper(pair.centres[k] + found->radii[k] * (std::cos(angle) * u + std::sin(angle) * v)));
+    }
+    sketch.path(ring, Weight::plain);
+  }
+  const double cosine = (found->radii[0] - found->radii[1]) / across.norm();
+  if (!found->belt || std::abs(cosine) >= 1) return;
+  for (const double side : {1.0, -1.0}) {
+    const Point e = cosine * u + side * std::sqrt(1 - cosine * cosine) * v;
+    sketch.line(Point(pair.centres[0] + found->radii[0] * e), Point(pair.centres[1] + found->radii[1] * e),
+                Weight::plain);
+  }
+}
 
 constexpr std::size_t most_strokes = 4000;  // more strokes do not fit a figure
 constexpr double axis_length = 9;           // mm

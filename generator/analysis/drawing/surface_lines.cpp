@@ -2,6 +2,7 @@
 #include "analysis/drawing/surface_lines.hpp"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,7 +11,6 @@
 #include <utility>
 
 #include "analysis/drawing/level_lines.hpp"
-#include "analysis/drawing/tracer.hpp"
 
 namespace eomgen::analysis {
 namespace {
@@ -18,6 +18,107 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+
+// Curve tracing by continuation. In: n - 1 equations in n coordinates, and the position as a function of them. Out:
+// points in space at equal distances along the solution curve.
+
+/// Values (n - 1) and Jacobian (n - 1 x n) of the equations; nullopt if they are undefined.
+using CurveEquations =
+    std::function<std::optional<std::pair<Eigen::VectorXd, Eigen::MatrixXd>>(const Eigen::VectorXd&)>;
+
+constexpr double share = 0.02;      // step length relative to the size of the figure
+constexpr double longest = 8;       // maximum curve length in each direction, relative to that size
+constexpr double inside = 1e-9;     // tolerance at bounds
+constexpr double standing = 1e-12;  // relative: the coordinates change but the position does not
+
+class CurveTracer {
+ public:
+  CurveTracer(const SurfaceFunction& function, const SurfaceSetting& place)
+      : f_(function), place_(place), n_(place.q.size()) {}
+
+  /// Change of coordinate k that moves the position by about the size of the figure.
+  double span(Index k) const { return place_.angle[static_cast<std::size_t>(k)] ? 1 : place_.size; }
+
+  /// Step length in space.
+  double step() const { return share * place_.size; }
+
+  bool is_inside(const VectorXd& q, const VectorXd& low, const VectorXd& high) const {
+    return ((q - low).array() >= -inside).all() && ((high - q).array() >= -inside).all();
+  }
+
+  /// Projects q onto the curve by Newton's method with minimum-norm steps, scaled by span(). Returns nullopt if it does
+  /// not converge in `tries` iterations.
+  std::optional<VectorXd> project_onto(const CurveEquations& equations, VectorXd q, int tries) const {
+    VectorXd S(n_);
+    for (Index k = 0; k < n_; ++k) S[k] = span(k);
+    for (; tries > 0; --tries) {
+      const auto now = equations(q);
+      if (!now) return std::nullopt;
+      const MatrixXd A = now->second * S.asDiagonal();
+      const MatrixXd gram = A * A.transpose();
+      const VectorXd back = S.asDiagonal() * (A.transpose() * gram.fullPivLu().solve(now->first));
+      if (!back.allFinite()) return std::nullopt;
+      q -= back;
+      if (back.cwiseQuotient(S).norm() < standing) break;
+    }
+    return q;
+  }
+
+  /// Traces the curve in both directions from a point until it closes (then the first and last points are equal) or
+  /// leaves the box.
+  std::vector<Point> trace(const CurveEquations& equations, const VectorXd& start, const VectorXd& low,
+                           const VectorXd& high) const {
+    const auto first = f_(start);
+    if (!first || !first->x.allFinite()) return {};
+    const Point begin = first->x;
+    std::vector<Point> forth, back;
+    for (std::vector<Point>* points : {&forth, &back}) {
+      VectorXd q = start;
+      std::optional<VectorXd> before;
+      points->push_back(begin);
+      for (int k = 0; k < static_cast<int>(longest / share); ++k) {
+        auto d = tangent(equations, q);
+        if (!d) break;
+        const bool turned = before ? before->dot(*d) < 0 : points == &back;
+        if (turned) *d = -*d;
+        before = d;
+        const auto next = project_onto(equations, q + step() * *d, 2);
+        const auto at = next ? f_(*next) : std::nullopt;
+        if (!at || !at->x.allFinite() || !is_inside(*next, low, high)) break;
+        q = *next;
+        points->push_back(at->x);
+        if (k > 4 && (at->x - begin).norm() < 0.7 * step()) {
+          points->push_back(begin);
+          return *points;
+        }
+      }
+    }
+    std::reverse(back.begin(), back.end());
+    back.insert(back.end(), forth.begin() + 1, forth.end());
+    return back;
+  }
+
+ private:
+  /// Tangent of the curve, per unit of distance in space.
+  std::optional<VectorXd> tangent(const CurveEquations& equations, const VectorXd& q) const {
+    const auto now = equations(q);
+    const auto at = f_(q);
+    if (!now || !at) return std::nullopt;
+    const MatrixXd& A = now->second;
+    VectorXd t(n_);
+    if (n_ == 2)
+      t << -A(0, 1), A(0, 0);
+    else
+      t = Eigen::Vector3d(A.row(0)).cross(Eigen::Vector3d(A.row(1)));
+    const double speed = (at->turn * t).norm();
+    if (!(speed > standing * t.norm() * place_.size)) return std::nullopt;
+    return VectorXd(t / speed);
+  }
+
+  const SurfaceFunction& f_;
+  const SurfaceSetting& place_;
+  Eigen::Index n_;
+};
 
 constexpr double pi = std::numbers::pi;
 constexpr double around = 0.6;         // extent of a net along a length, relative to the size

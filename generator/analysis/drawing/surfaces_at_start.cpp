@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/drawing/surfaces_at_start.hpp"
 
-#include <cmath>
 #include <map>
 #include <stdexcept>
 

@@ -7,7 +7,6 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/sweep/basins.hpp"
 #include "analysis/sweep/statistics.hpp"
 #include "cli/json.hpp"
 
