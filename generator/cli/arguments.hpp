@@ -3,10 +3,8 @@
 // seconds of compilation to the file of every command.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 

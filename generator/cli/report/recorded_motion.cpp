@@ -8,10 +8,169 @@
 #include <eom/output/decimal.hpp>
 #include <eom/output/svg_plot.hpp>
 
-#include "cli/report/page_json.hpp"
+#include "analysis/drawing/parts.hpp"
 
 namespace eomgen::cli {
 namespace {
+
+// JSON for the script of a page: parts of the drawing, forces, initial data of the integrator.
+
+Json bounds(const std::vector<double>& list) { return list_of(list, finite_or_null); }
+
+/// Values that an event or a sample sets: entries [place in the state, place in the values of `resets`].
+void add_reset(Json& of, const eom::hybrid::Reset& reset) {
+  of["set"] = list_of(reset.set, [](const eom::hybrid::Reset::Entry& entry) {
+    return Json::array({entry.component, entry.value});
+  });
+  of["condition"] = reset.condition ? Json(*reset.condition) : Json(nullptr);
+}
+
+Json to_json(const eom::StateLayout& layout) {
+  return {{"rates", layout.rates_begin()},
+          {"first_order", layout.first_order_begin()},
+          {"discrete", layout.discrete_begin()},
+          {"size", layout.size()}};
+}
+
+Json line(const analysis::DrawnLine& l) { return EOMGEN_MEMBERS(l, a, b); }
+
+/// Bounds of coordinates are taken from the scene.
+Json to_json(const analysis::DrawnParts& parts, const model::Model& model, const run::Scene& scene) {
+  Json result;
+  result["places"] =
+      list_of(parts.places, [](const analysis::DrawnPlace& p) { return EOMGEN_MEMBERS(p, name, kind, from, at); });
+  result["bodies"] =
+      list_of(parts.bodies, [](const analysis::DrawnBody& b) { return EOMGEN_MEMBERS(b, place, axes, mass, inertia); });
+  result["dampers"] = list_of(parts.dampers, line);
+  result["springs"] = list_of(parts.springs, line);
+  result["joints"] = list_of(parts.joints, [](const analysis::DrawnJoint& j) -> Json {
+    return {{"name", j.name}, {"at", j.at}, {"of", Json::array({or_null(j.of[0]), or_null(j.of[1])})}};
+  });
+  result["contacts"] = list_of(
+      parts.contacts, [](const analysis::DrawnContact& c) { return EOMGEN_MEMBERS(c, name, of, at, tangents, foot); });
+  result["couplings"] = list_of(parts.couplings, [](const analysis::DrawnCoupling& c) {
+    return EOMGEN_MEMBERS(c, name, of, axes, ratio, carried);
+  });
+  result["shapes"] = list_of(parts.shapes, [](const analysis::DrawnShape& s) {
+    return EOMGEN_MEMBERS(s, place, kind, lengths, axis, at, faces);
+  });
+  std::size_t count = 0;
+  result["surfaces"] = list_of(parts.surfaces, [&](const analysis::DrawnSurface& s) -> Json {
+    const auto of_unit = [&](const char* unit) {
+      return list_of(s.coordinates, [&](std::uint32_t c) -> Json { return model.coordinates[c].unit.text == unit; });
+    };
+    std::vector<double> lower, upper;
+    for (const std::uint32_t c : s.coordinates) {
+      lower.push_back(scene.lower[c]);
+      upper.push_back(scene.upper[c]);
+    }
+    return {{"name", s.name},
+            {"place", s.place},
+            {"at", s.at},
+            {"columns", s.coordinates},
+            {"others", s.others},
+            {"others_at", s.others_at},
+            {"bound", s.psi.size()},
+            {"angles", of_unit("rad")},
+            {"lengths", of_unit("m")},
+            {"lower", bounds(lower)},
+            {"upper", bounds(upper)},
+            {"integrals", or_null(s.integrals)},
+            {"touched", s.has_contact},
+            {"reshapes", s.changes_shape},
+            {"moves", s.is_moving},
+            {"equations", "surface_" + std::to_string(++count)}};
+  });
+  result["untried"] = parts.rods_incomplete;
+  result["rods"] = list_of(parts.rods, [](const analysis::DrawnRod& r) { return Json::array({r.a, r.b}); });
+  return result;
+}
+
+/// Adds the arrows of forces, and the names of forces without a vector, to the parts.
+void add_forces(Json& parts, const analysis::DrawnForces& forces) {
+  parts["arrows"] = list_of(forces.list(), [](const analysis::DrawnForce& f) -> Json {
+    return {{"name", f.name}, {"kind", f.kind}, {"at", f.at}, {"value", f.value}, {"turns", f.is_moment}};
+  });
+  parts["beyond"] = forces.omitted_count();
+  parts["without_vector"] = forces.without_vector();
+}
+
+const char* name_of(eom::contacts::ImpactLaw law) {
+  switch (law) {
+    case eom::contacts::ImpactLaw::newton: return "newton";
+    case eom::contacts::ImpactLaw::poisson: return "poisson";
+    case eom::contacts::ImpactLaw::moreau: return "moreau";
+    case eom::contacts::ImpactLaw::stronge: return "stronge";
+  }
+  return "";
+}
+
+Json to_json(const eom::contacts::Set& set) {
+  if (set.empty()) return nullptr;
+  return {{"values", set.values},
+          {"law", name_of(set.law)},
+          {"order", set.order == eom::contacts::ImpactOrder::sequence ? "sequence" : "simultaneous"}};
+}
+
+Json to_json(const analysis::LiveStart& start) {
+  return {{"n", start.layout.coordinates},
+          {"layout", to_json(start.layout)},
+          {"states", list_of(start.states,
+                             [](const analysis::LiveState& s) -> Json {
+                               return {{"name", s.name}, {"unit", s.unit}, {"moved", s.is_adjustable}};
+                             })},
+          {"lower", bounds(start.lower)},
+          {"upper", bounds(start.upper)},
+          {"set", list_of(start.set,
+                          [](const auto& s) {
+                            return Json::array({s.first, s.second});
+                          })},
+          {"parameters", list_of(start.parameters,
+                                 [](const analysis::LiveParameter& p) -> Json {
+                                   return {{"name", p.name},   {"unit", p.unit},         {"note", p.note},
+                                           {"value", p.value}, {"positive", p.positive}, {"moved", p.is_adjustable}};
+                                 })},
+          {"starts", list_of(start.starts,
+                             [](const auto& s) {
+                               return Json::array({s.first, s.second});
+                             })},
+          {"inputs", start.inputs},
+          {"events", list_of(start.events,
+                             [](const analysis::LiveEvent& e) -> Json {
+                               Json event{{"name", e.name}, {"stop", e.is_terminal}, {"direction", e.direction}};
+                               add_reset(event, e.reset);
+                               return event;
+                             })},
+          {"samples", list_of(start.samples,
+                              [](const eom::hybrid::Sample& s) -> Json {
+                                Json sample{{"name", s.name},
+                                            {"noise", list_of(s.noise, [](const auto& noise) {
+                                               return Json::array({noise.component, noise.normal, noise.seed});
+                                             })}};
+                                add_reset(sample, s.reset);
+                                return sample;
+                              })},
+          {"contacts", list_of(start.contacts,
+                               [](const analysis::LiveContact& c) -> Json {
+                                 return {{"name", c.name},
+                                         {"directions", c.shape.dimensions},
+                                         {"surface", c.shape.surface},
+                                         {"unilateral", c.shape.unilateral},
+                                         {"sticks", c.shape.sticks},
+                                         {"slip", c.slip},
+                                         {"phi", c.phi},
+                                         {"slopes", c.slopes},
+                                         {"constraint", c.constraint},
+                                         {"restitution", c.restitution ? Json(*c.restitution) : Json(nullptr)}};
+                               })},
+          {"contact_output_count", start.contact_outputs},
+          {"mode_size", start.mode_size},
+          {"solved", to_json(start.contact_set)},
+          {"reset_count", start.reset_values},
+          {"constraints", start.constraints},
+          {"event_count", start.event_functions},
+          {"size_count", start.sizes}};
+}
 
 constexpr double least_seconds = 4, most_seconds = 20;  // duration of an animation, for any time span of the run
 constexpr int digits_of_states = 10, digits_of_screens = 6;

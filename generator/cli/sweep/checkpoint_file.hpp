@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <eom/output/atomic_file.hpp>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -11,9 +12,29 @@
 
 #include "cli/sweep/row_checksum.hpp"
 #include "cli/sweep/rows.hpp"
-#include "cli/sweep/table_lock.hpp"
 
 namespace eomgen::cli {
+
+/// Lock of a table, so that two sweeps do not write the same one. In: the path of the table. Out: FILE.lock, which this
+/// process holds until it ends or destroys the lock. The file of a killed process holds no lock.
+class TableLock {
+ public:
+  TableLock() = default;  // of no table
+  /// `table`: with all links followed. Throws Error if another process holds the lock, std::system_error if the file
+  /// cannot be made. On a file system without locks nothing is locked.
+  explicit TableLock(const std::filesystem::path& table);
+  TableLock(TableLock&& other) noexcept;
+  TableLock& operator=(TableLock&& other) noexcept;
+  TableLock(const TableLock&) = delete;
+  TableLock& operator=(const TableLock&) = delete;
+  ~TableLock() { release(); }
+
+ private:
+  void release() noexcept;
+
+  std::string path_;
+  int file_ = -1;
+};
 
 /// Table of a sweep with checkpoints. Rows are appended to FILE.partial-XXXXXX in the order of completion; finish()
 /// writes FILE in the order of the runs and removes the partial file. The constructor takes over the rows of partial

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
 #include <eom/output/atomic_file.hpp>
 #include <eom/output/decimal.hpp>

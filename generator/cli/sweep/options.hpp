@@ -2,7 +2,6 @@
 // Options of a sweep, as typed.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
