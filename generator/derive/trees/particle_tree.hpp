@@ -42,8 +42,8 @@ struct ParticleTree {
 };
 
 /// The tree for the coordinates `of`. With `imposed`, the eliminated coordinates are functions of time. Empty if the
-/// particles form no tree, or if kinetic energy is given besides them. If it is given alone, the particles are those of
-/// point_energies.hpp.
+/// particles form no tree, or if kinetic energy is given besides them. If it is given alone, the particles are those
+/// whose energy it is.
 std::optional<ParticleTree> particle_tree(Mechanics& mechanics, const std::vector<std::uint32_t>& of, bool imposed);
 
 }  // namespace eomgen::derive
