@@ -4,7 +4,6 @@
 #include <cln/dfloat.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 
 #include "derive/formulations.hpp"
