@@ -3,7 +3,6 @@
 
 #include <cln/real.h>
 
-#include <algorithm>
 #include <set>
 #include <stdexcept>
 

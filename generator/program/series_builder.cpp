@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/series_builder.hpp"
 
-#include <algorithm>
-
 #include "program/taylor.hpp"
 
 namespace eomgen::program {
