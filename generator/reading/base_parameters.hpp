@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Base parameters of mechanisms whose regressor is too long to be written out. The inertias that bodies share with
-// their carriers are formulas (carried_inertias.hpp). The rank of Y at random states decides whether these relations
+// their carriers are formulas. The rank of Y at random states decides whether these relations
 // are all. The others, close to the ground, follow from written columns.
 #pragma once
 

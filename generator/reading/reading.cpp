@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <unordered_map>
 
@@ -12,11 +15,44 @@
 #include "reading/forms.hpp"
 #include "reading/lagrangian.hpp"
 #include "reading/no_value.hpp"
-#include "reading/sum_memo.hpp"
+#include "reading/sum.hpp"
 #include "reading/trig.hpp"
 
 namespace eomgen::reading {
 namespace {
+
+// Sums that were converted from nodes of the Dag used last. Documents show the same generalised forces in several
+// forms, and each conversion of a long force takes a fraction of a second.
+
+/// Safe to use from several threads, which then may replace each other's Dag.
+class SumMemo {
+ public:
+  std::optional<Sum> find(const std::shared_ptr<symbolic::Dag>& dag, symbolic::Ref expression) {
+    const std::lock_guard lock(mutex_);
+    if (!is_of(dag)) return std::nullopt;
+    const auto found = sums_.find(expression);
+    return found == sums_.end() ? std::nullopt : std::optional(found->second);
+  }
+
+  void store(const std::shared_ptr<symbolic::Dag>& dag, symbolic::Ref expression, const Sum& sum) {
+    const std::lock_guard lock(mutex_);
+    if (!is_of(dag)) {
+      sums_.clear();
+      dag_ = dag;
+    }
+    sums_.emplace(expression, sum);
+  }
+
+ private:
+  // Owners are compared, since another Dag may get the address of one that no longer exists.
+  bool is_of(const std::shared_ptr<symbolic::Dag>& dag) const {
+    return !dag_.owner_before(dag) && !dag.owner_before(dag_);
+  }
+
+  std::mutex mutex_;
+  std::weak_ptr<symbolic::Dag> dag_;
+  std::map<symbolic::Ref, Sum> sums_;
+};
 
 // For equations that are too long to display: keeps the list of coordinates and forces only.
 void leave_unexpanded(const Mechanics& m, DisplayForm& form, const std::string& why) {

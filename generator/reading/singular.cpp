@@ -5,20 +5,130 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <map>
 #include <stdexcept>
+#include <vector>
 
-#include "reading/evaluator.hpp"
 #include "reading/lagrangian.hpp"
 #include "reading/no_value.hpp"
 #include "reading/rational_function.hpp"
 #include "reading/small_matrix.hpp"
+#include "reading/sum.hpp"
 #include "reading/trig.hpp"
 #include "rotations/rotation.hpp"
+#include "symbolic/arithmetic.hpp"
 #include "symbolic/sample.hpp"
+#include "work.hpp"
 
 namespace eomgen::reading {
 namespace {
+
+// Values of a canonical sum in binary64, at many points. In: a Sum. Out: its value; NaN where a function is not
+// defined.
+
+constexpr std::size_t factors_a_unit = 8;  // of `work::consume_budget`
+
+double evaluated_power(double base, int exponent) {
+  double result = 1;
+  for (int k = std::abs(exponent); k > 0; k /= 2, base *= base) {
+    if (k % 2 != 0) result *= base;
+  }
+  return exponent < 0 ? 1 / result : result;
+}
+
+/// Evaluates each atom once, arguments first. The sum must outlive the evaluator.
+class Evaluator {
+ public:
+  explicit Evaluator(const Sum& sum) : whole_(flat(sum)) {}
+
+  /// The symbols, with their indices into `at`.
+  const std::map<Symbol, std::size_t>& symbols() const { return symbols_; }
+
+  /// `at`: a value for each symbol, at its index. Counts its operations: throws BudgetExceeded.
+  double operator()(const std::vector<double>& at) {
+    work::consume_budget(size_ / factors_a_unit + 1);
+    for (Item& item : items_) item.value = item.op == Op::symbol ? at[item.symbol] : function(item);
+    return value(whole_);
+  }
+
+ private:
+  struct Power {
+    std::size_t item;
+    int whole;        // the exponent if it is a small integer; else 0
+    double exponent;  // else
+  };
+  struct Term {
+    double coefficient;
+    std::vector<Power> powers;
+  };
+  using Flat = std::vector<Term>;
+  struct Item {
+    Op op;
+    std::size_t symbol = 0;
+    std::vector<Flat> args;
+    double value = 0;
+  };
+  struct Before {
+    bool operator()(const Atom* a, const Atom* b) const { return compare(*a, *b) < 0; }
+  };
+
+  Flat flat(const Sum& sum) {
+    constexpr int largest_whole = 64;
+    Flat result;
+    for (const auto& [monomial, coefficient] : sum.terms()) {
+      Term term{cln::double_approx(coefficient), {}};
+      for (const Factor& factor : monomial) {
+        const bool whole = is_integer(factor.exponent) && cln::abs(factor.exponent) <= largest_whole;
+        term.powers.push_back({place(*factor.atom), whole ? cln::cl_I_to_int(cln::numerator(factor.exponent)) : 0,
+                               whole ? 0 : cln::double_approx(factor.exponent)});
+      }
+      size_ += 1 + term.powers.size();
+      result.push_back(std::move(term));
+    }
+    return result;
+  }
+
+  std::size_t place(const Atom& atom) {
+    if (const auto known = places_.find(&atom); known != places_.end()) return known->second;
+    Item item{atom.op, 0, {}, 0};
+    if (atom.op == Op::symbol) {
+      const auto same = symbols_.find(atom.symbol);
+      item.symbol = same != symbols_.end() ? same->second : symbols_.size();
+      symbols_.emplace(atom.symbol, item.symbol);
+    }
+    for (const Sum& argument : atom.args) item.args.push_back(flat(argument));
+    items_.push_back(std::move(item));
+    return places_[&atom] = items_.size() - 1;
+  }
+
+  double value(const Flat& sum) const {
+    double result = 0;
+    for (const Term& term : sum) {
+      double product = term.coefficient;
+      for (const Power& p : term.powers)
+        product *=
+            p.whole != 0 ? evaluated_power(items_[p.item].value, p.whole) : std::pow(items_[p.item].value, p.exponent);
+      result += product;
+    }
+    return result;
+  }
+
+  double function(const Item& item) const {
+    const auto arg = [&](std::size_t i) { return value(item.args[i]); };
+    switch (item.op) {
+      case Op::pi: return symbolic::Binary64Arithmetic::pi();
+      case Op::add: return arg(0);  // a sum under a power
+      default: return symbolic::value_of(item.op, 0, arg, symbolic::Binary64Arithmetic{});
+    }
+  }
+
+  std::map<const Atom*, std::size_t, Before> places_;
+  std::map<Symbol, std::size_t> symbols_;
+  std::vector<Item> items_;
+  std::size_t size_ = 0;  // number of factors and terms
+  Flat whole_;            // declared after the members that its initialiser fills
+};
 
 // Larger determinants are not expanded; the charts of the particles are examined instead.
 constexpr std::size_t largest_determinant = 4;
