@@ -16,12 +16,10 @@
 #include "symbolic/evaluate.hpp"
 #include "system/contact_set.hpp"
 #include "verify/abi_arguments.hpp"
+#include "verify/abi_differences.hpp"
 #include "verify/applied_forces.hpp"
 #include "verify/central_differences.hpp"
 #include "verify/derivative_comparisons.hpp"
-#include "verify/energy_comparison.hpp"
-#include "verify/frame_comparison.hpp"
-#include "verify/inertia_comparison.hpp"
 
 namespace eomgen::verify {
 namespace {

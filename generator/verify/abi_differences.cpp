@@ -1,13 +1,83 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "verify/frame_comparison.hpp"
+#include "verify/abi_differences.hpp"
 
 #include <algorithm>
 #include <map>
 
 #include "verify/applied_forces.hpp"
 #include "verify/frame_values.hpp"
+#include "verify/inertia_values.hpp"
 
 namespace eomgen::verify {
+namespace {
+
+/// `v`: accelerations of the free coordinates. `state` has those of the others.
+double regressor_difference(const AbiResults& values, const AbiResults& sizes, const std::vector<std::uint32_t>& free,
+                            const Oracle& oracle, State state, const std::vector<Real>& v) {
+  for (std::size_t i = 0; i < free.size(); ++i) state.qddot[free[i]] = v[i];
+  double largest = 0;
+  std::size_t column = 0;
+  for (const InertialWork& expected : inertial_works(oracle, state)) {
+    largest = std::max(largest, relative_difference(values[1].at(column) - expected.parameter,
+                                                    sizes[1].at(column) + cln::abs(expected.parameter)));
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      const std::size_t at = i + free.size() * column;
+      largest = std::max(largest, relative_difference(values[0].at(at) - expected.work[free[i]],
+                                                      sizes[0].at(at) + expected.scale[free[i]]));
+    }
+    ++column;
+  }
+  return largest;
+}
+
+double momentum_difference(const AbiResults& values, const AbiResults& sizes, const std::vector<std::uint32_t>& free,
+                           const Oracle& oracle, const State& state) {
+  if (values[2].empty()) return 0;
+  const Momentum expected = momentum(oracle, state);
+  double largest = 0;
+  for (std::size_t c = 0; c < 3; ++c)
+    largest =
+        std::max(largest, relative_difference(values[2].at(c) - expected.centre[c], sizes[2].at(c) + expected.length));
+  for (std::size_t c = 0; c < 6; ++c) {
+    largest = std::max(
+        largest, relative_difference(values[1].at(c) - expected.whole[c], sizes[1].at(c) + expected.whole_scale[c]));
+    for (std::size_t i = 0; i < free.size(); ++i)
+      largest = std::max(largest, relative_difference(values[0].at(c + 6 * i) - expected.tangents[free[i]][c],
+                                                      sizes[0].at(c + 6 * i) + expected.scale[free[i]][c]));
+  }
+  return largest;
+}
+
+}  // namespace
+
+std::optional<double> inertia_difference(const std::string& function, const AbiResults& values, const AbiResults& sizes,
+                                         const std::vector<std::uint32_t>& free, const Oracle& oracle,
+                                         const State& state, const std::vector<Real>& v) {
+  if (function == "regressor") return regressor_difference(values, sizes, free, oracle, state, v);
+  if (function == "momentum") return momentum_difference(values, sizes, free, oracle, state);
+  return std::nullopt;
+}
+
+double energy_difference(const AbiResults& values, const AbiResults& sizes, const EnergyValues& expected) {
+  return std::max(relative_difference(values[0].at(0) - expected.kinetic, sizes[0].at(0) + expected.scale),
+                  relative_difference(values[0].at(1) - expected.potential, sizes[0].at(1) + expected.scale));
+}
+
+double gradient_difference(const AbiResults& values, const AbiResults& sizes, const std::vector<Real>& direction,
+                           const CentralDifference& slope, const Real& lost) {
+  double largest = 0;
+  for (std::size_t energy = 0; energy < 2; ++energy) {
+    const std::vector<Real>&gradient = values[1 + energy], &size_of = sizes[1 + energy];
+    Real sum = 0, size = sizes[0].at(energy) * lost + slope.errors[0].at(energy);
+    for (std::size_t j = 0; j < gradient.size(); ++j) {
+      sum = sum + gradient[j] * direction[j];
+      size = size + size_of[j] * cln::abs(direction[j]);
+    }
+    largest = std::max(largest, relative_difference(sum - slope.values[0].at(energy), size));
+  }
+  return largest;
+}
+
 namespace {
 
 constexpr std::size_t twist = 6, pose = 12;
