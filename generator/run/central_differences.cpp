@@ -2,7 +2,6 @@
 #include "run/central_differences.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace eomgen::run {

@@ -10,7 +10,6 @@
 #include "model/names.hpp"
 #include "model/syntax.hpp"
 #include "run/scene.hpp"
-#include "symbolic/decimal.hpp"
 
 namespace eomgen::run {
 namespace {
