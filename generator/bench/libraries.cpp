@@ -4,7 +4,6 @@
 #include <dlfcn.h>
 
 #include <chrono>
-#include <cstring>
 
 #include "bench/median_time.hpp"
 #include "emit/shared_library/build.hpp"

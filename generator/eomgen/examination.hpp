@@ -3,7 +3,6 @@
 // singular sets.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
