@@ -55,7 +55,7 @@ Emitted emitted(const std::string& model, const Words& more = {}) {
 }
 
 using Names = std::set<std::string>;
-Names with(Names names, const Names& more) {
+Names joined(Names names, const Names& more) {
   names.insert(more.begin(), more.end());
   return names;
 }
@@ -73,7 +73,7 @@ std::string cart(const std::string& input, const std::string& force) {
 
 TEST_CASE("needs: a requested function adds its symbol and does not change the right-hand side") {
   const Emitted bare = emitted("P7_moving_sphere");
-  CHECK(bare.functions == with(always, bare.report["hoisted"].is_null() ? Names{} : prepared));
+  CHECK(bare.functions == joined(always, bare.report["hoisted"].is_null() ? Names{} : prepared));
   CHECK_FALSE(contains(bare.source, "lambda"));
   for (const auto& [words, function] : {std::pair<Words, std::string>{{"--with", "reactions"}, "reactions"},
                                         {{"--with", "jac"}, "jac"},
@@ -96,7 +96,7 @@ TEST_CASE("needs: a requested function adds its symbol and does not change the r
     const auto& shown = function;
     CAPTURE(shown);
     const Emitted more = emitted("P7_moving_sphere", words);
-    CHECK(more.functions == with(bare.functions, {function}));
+    CHECK(more.functions == joined(bare.functions, {function}));
     CHECK(more.function("rhs") == bare.function("rhs"));
     CHECK(more.report["operations"] == bare.report["operations"]);
   }
@@ -108,15 +108,15 @@ TEST_CASE("needs: derivatives of outputs and reactions come with their values") 
   for (const std::string suffix : {"", "_p", "_u"}) {
     CAPTURE(suffix);
     CHECK(functions({"--with", "reactions_jac" + suffix}) ==
-          with(bare.functions, {"reactions", "reactions_jac" + suffix}));
+          joined(bare.functions, {"reactions", "reactions_jac" + suffix}));
     CHECK(functions({"--with", "outputs_jac" + suffix, "--output", "energy"}) ==
-          with(bare.functions, {"outputs", "outputs_jac" + suffix}));
+          joined(bare.functions, {"outputs", "outputs_jac" + suffix}));
   }
 }
 
 TEST_CASE("needs: fixed parameters are not read, and expressions of them are numbers") {
   const Emitted open = emitted("S5_double_pendulum"), fixed = emitted("S5_double_pendulum", {"--fix", "m1,m2,L1,L2,g"});
-  CHECK(open.functions == with(always, prepared));
+  CHECK(open.functions == joined(always, prepared));
   CHECK(fixed.functions == always);  // no function `prepare` remains
   CHECK(fixed.operations() < open.operations());
   CHECK(contains(open.function("rhs"), " = p["));
@@ -161,14 +161,14 @@ TEST_CASE("needs: a kernel for sines is used for two angles, not for one") {
 TEST_CASE("needs: second charts are in the code only on request, and never for a model without exchangeable charts") {
   const Emitted own = emitted("R1_free_body"), both = emitted("R1_free_body", {"--with", "charts"});
   CHECK_FALSE(contains(own.source, "chart"));
-  CHECK(both.functions == with(own.functions, {"chart"}));
+  CHECK(both.functions == joined(own.functions, {"chart"}));
   CHECK(both.report["operations"] == own.report["operations"]);  // of the first chart: nothing is added
   CHECK(contains(both.source, "own_rhs("));
   CHECK(contains(both.source, "chart1_rhs("));
   const std::string kernel = "static inline void R1_free_body_sincos_lanes(";
   CHECK(both.source.find(kernel) == both.source.rfind(kernel));  // used by both
   const Emitted mass = emitted("R1_free_body", {"--with", "charts,mass"});
-  CHECK(mass.functions == with(both.functions, {"mass", "mass_in"}));
+  CHECK(mass.functions == joined(both.functions, {"mass", "mass_in"}));
   const Folder folder;
   const ChildResult refused =
       eomgen::test::eomgen(folder, {"emit", "R14_sliding_cylinder", "-o", ".", "--with", "charts"});

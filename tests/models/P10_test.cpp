@@ -14,8 +14,8 @@ using namespace eomgen;
 
 namespace {
 
-constexpr double rounding = 1e-14;  // about ten operations, with cancellation in the sum by at most a factor of 5
-constexpr double of_a_run = 1e-9;   // relative, a minute at rtol 1e-12
+constexpr double ten_operations = 1e-14;  // about ten operations, with cancellation in the sum by at most a factor of 5
+constexpr double of_a_run = 1e-9;         // relative, a minute at rtol 1e-12
 
 struct Numbers {
   double m0 = 1000, burn = 8, alpha = 3.986e14, R0 = 6.378e6, a = 10, theta0 = 0.3, phi0 = 1.1;
@@ -54,9 +54,9 @@ TEST_CASE("P10: the thrust is radial and equals d(m Rdot)/dt + alpha m/R^2 at al
         return symbol.kind == symbolic::SymbolKind::parameter ? parameters[symbol.index] : std::nan("");
       });
       const double K = n.thrust(t);
-      CHECK(value[0] == doctest::Approx(K).epsilon(rounding));
-      for (std::size_t k = 0; k < 3; ++k) CHECK(value[1 + k] == doctest::Approx(K * e[k]).epsilon(10 * rounding));
-      CHECK(value[4] == doctest::Approx(K * 2 * n.a * t).epsilon(rounding));
+      CHECK(value[0] == doctest::Approx(K).epsilon(ten_operations));
+      for (std::size_t k = 0; k < 3; ++k) CHECK(value[1 + k] == doctest::Approx(K * e[k]).epsilon(10 * ten_operations));
+      CHECK(value[4] == doctest::Approx(K * 2 * n.a * t).epsilon(ten_operations));
     }
   }
 }

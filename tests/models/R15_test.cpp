@@ -14,7 +14,7 @@ namespace {
 void tighten_linkage(pipeline::SimulationRequest& request) { request.overrides.rtol = request.overrides.atol = 1e-12; }
 
 // Runs of 2 s at 1e-12 with motions of the order of 1.
-constexpr double same = 1e-9;
+constexpr double same_motion = 1e-9;
 
 void replace(std::string& text, const std::string& old, const std::string& with) {
   const std::size_t at = text.find(old);
@@ -43,9 +43,9 @@ void check_balance(const FinishedRun& run, const std::string& joint) {
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     for (const char* k : {"1", "2", "3"}) {
       CHECK(std::abs(run.rows.at(i, "reaction." + joint + "." + k) - run.rows.at(i, std::string("F") + k)) <
-            same);  // Newton's law of the second
+            same_motion);  // Newton's law of the second
       CHECK(std::abs(run.rows.at(i, std::string("H") + k) - run.rows.at(0, std::string("H") + k)) <
-            same);  // no external force
+            same_motion);  // no external force
     }
   }
   CHECK(run.drift("energy") < 1e-11);
@@ -61,7 +61,7 @@ TEST_CASE("R15: a ball joint gives the same motion as relative coordinates, angl
   for (const char* moment : {"reaction.ball.4", "reaction.ball.5", "reaction.ball.6"}) CHECK(joint.final(moment) == 0);
   for (const char* name : {"x1", "y1", "z1", "psi", "theta", "phi", "n1", "n2", "n3", "n1_dot", "n2_dot", "n3_dot"}) {
     CAPTURE(name);
-    CHECK(std::abs(joint.final(name) - tree.final(name)) < same);
+    CHECK(std::abs(joint.final(name) - tree.final(name)) < same_motion);
   }
 }
 
@@ -77,7 +77,7 @@ TEST_CASE("R15: a pin gives the same motion as a relative angle, angles 3-2-1") 
   check_balance(joint, "pin");
   for (const char* name : {"x1", "y1", "z1", "psi", "theta", "phi", "x1_dot", "psi_dot", "theta_dot", "phi_dot"}) {
     CAPTURE(name);
-    CHECK(std::abs(joint.final(name) - tree.final(name)) < same);
+    CHECK(std::abs(joint.final(name) - tree.final(name)) < same_motion);
   }
 }
 

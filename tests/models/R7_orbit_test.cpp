@@ -11,12 +11,12 @@ using linear::Stability;
 
 namespace {
 
-struct Attitude {
+struct OrbitAttitude {
   double R, rate, radial, along, across;  // moments of inertia by where their axes point; 0 where none does
 };
 
 /// The axes of the body in those of the orbit, from its Euler parameters.
-Attitude attitude(const analysis::SteadyMotions& all, const analysis::SteadyMotion& point) {
+OrbitAttitude attitude(const analysis::SteadyMotions& all, const analysis::SteadyMotion& point) {
   const auto value = [&](const std::string& name) {
     const auto& names = all.problem.flow->names();
     return linear::to_double(
@@ -49,7 +49,7 @@ TEST_CASE(
   const analysis::SteadyMotions all = analysis::steady_motions(request);
   int count = 0, stable = 0;
   for (const analysis::SteadyMotion& point : all.points) {
-    const Attitude x = attitude(all, point);
+    const OrbitAttitude x = attitude(all, point);
     CHECK(x.R > 0.5);  // nearer, the second order says nothing, and the range of R leaves it out
     ++count;
     REQUIRE(x.radial * x.along * x.across > 0);

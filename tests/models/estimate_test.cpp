@@ -14,15 +14,15 @@ using namespace eomgen;
 
 namespace {
 
-using Values = std::map<std::string, double>;
+using ValuesByState = std::map<std::string, double>;
 
 constexpr double factor = 10;  // the promise of docs/commands.md
 // Below this neither the closed form in binary64 nor the run itself says anything about a factor.
 constexpr double rounding_floor = 2e-13;
 
-void check_estimates(const std::string& model, const std::function<Values(const test::FinishedRun&)>& exact) {
+void check_estimates(const std::string& model, const std::function<ValuesByState(const test::FinishedRun&)>& exact) {
   const test::FinishedRun base = test::run_model(model);
-  const Values truth = exact(base);
+  const ValuesByState truth = exact(base);
   for (const char* solver : {"dopri5", "dop853", "auto"}) {
     for (int exponent = 4; exponent <= 11; ++exponent) {
       run::Overrides overrides;
@@ -40,8 +40,8 @@ void check_estimates(const std::string& model, const std::function<Values(const 
   }
 }
 
-Values of_states(const test::FinishedRun& run, const run::RunResult& result) {
-  Values values;
+ValuesByState of_states(const test::FinishedRun& run, const run::RunResult& result) {
+  ValuesByState values;
   for (const auto& [name, error] : run.simulation.result.error_estimate) {
     if (name != "max") values[name] = test::value_of(result.final, name);
   }
@@ -54,7 +54,7 @@ TEST_CASE("estimate: P2 against elliptic functions") {
   check_estimates("P2_planar_pendulum", [](const test::FinishedRun& run) {
     const test::Swing swing =
         test::pendulum_from_rest(1.0, std::sqrt(run.parameter("g") / run.parameter("L")), run.simulation.scene.t1);
-    return Values{{"theta", swing.angle}, {"theta_dot", swing.rate}};
+    return ValuesByState{{"theta", swing.angle}, {"theta_dot", swing.rate}};
   });
 }
 
@@ -63,7 +63,8 @@ TEST_CASE("estimate: P14 against Kepler's equation") {
     const double inclination = 30 * std::acos(-1.0) / 180;
     const test::Orbit o =
         test::kepler(run.parameter("GM"), run.parameter("a"), run.parameter("e"), inclination, run.simulation.scene.t1);
-    return Values{{"x", o.r[0]}, {"y", o.r[1]}, {"z", o.r[2]}, {"x_dot", o.v[0]}, {"y_dot", o.v[1]}, {"z_dot", o.v[2]}};
+    return ValuesByState{{"x", o.r[0]},     {"y", o.r[1]},     {"z", o.r[2]},
+                         {"x_dot", o.v[0]}, {"y_dot", o.v[1]}, {"z_dot", o.v[2]}};
   });
 }
 
@@ -78,7 +79,7 @@ TEST_CASE("estimate: S1 against its modes") {
     const Eigen::Vector2d c = (w * t).array().cos(), s = (w * t).array().sin();
     const Eigen::Vector2d x = modes.eigenvectors() * c.cwiseProduct(amplitudes);
     const Eigen::Vector2d v = -(modes.eigenvectors() * s.cwiseProduct(w).cwiseProduct(amplitudes));
-    return Values{{"x1", x(0)}, {"x2", x(1)}, {"x1_dot", v(0)}, {"x2_dot", v(1)}};
+    return ValuesByState{{"x1", x(0)}, {"x2", x(1)}, {"x1_dot", v(0)}, {"x2_dot", v(1)}};
   });
 }
 
