@@ -8,6 +8,7 @@
 
 #include "eom/error_estimate.hpp"
 #include "eom/events/integrate.hpp"
+#include "lib/compiled.hpp"
 #include "lib/problems.hpp"
 
 namespace {
@@ -63,9 +64,9 @@ TEST_CASE(
     for (const double end : {40.0, -40.0}) {
       CAPTURE(tolerance);
       MethodChoice choice;
-      const Result found = eom::integrate("auto", kepler, 0, kepler.start, end, options_for(tolerance, choice));
+      const Result found = compiled::integrate("auto", kepler, 0, kepler.start, end, options_for(tolerance, choice));
       const char* name = tolerance > 1e-4 ? "dopri5" : "dop853";
-      const Result plain = eom::integrate(name, kepler, 0, kepler.start, end, options_for(tolerance, choice));
+      const Result plain = compiled::integrate(name, kepler, 0, kepler.start, end, options_for(tolerance, choice));
       CHECK(choice.method == std::string(name));
       CHECK(choice.changes.empty());
       CHECK(found.x == plain.x);
@@ -79,13 +80,13 @@ TEST_CASE("auto: a decay a hundred thousand times faster than the motion leads t
     CAPTURE(tolerance);
     const char* implicit = tolerance > 1e-5 || tolerance < 1e-11 ? "radau5" : "radau";
     MethodChoice choice, backwards;
-    const Result found = eom::integrate("auto", Decay{}, 0, State{1}, 5, options_for(tolerance, choice));
+    const Result found = compiled::integrate("auto", Decay{}, 0, State{1}, 5, options_for(tolerance, choice));
     const auto mirrored = [](double t, const double* x, double* dx) {
       const int code = Decay{}(-t, x, dx);
       dx[0] = -dx[0];
       return code;
     };
-    CHECK(eom::integrate("auto", mirrored, 0, State{1}, -5, options_for(tolerance, backwards)).outcome ==
+    CHECK(compiled::integrate("auto", mirrored, 0, State{1}, -5, options_for(tolerance, backwards)).outcome ==
           eom::Outcome::done);
     CHECK(backwards.method == std::string(implicit));
     CHECK(backwards.changes.size() == 1);  // no change back
@@ -107,9 +108,9 @@ TEST_CASE("auto: vibrations that are not part of the motion count as stiff") {
   for (const double tolerance : {1e-5, 1e-8}) {
     CAPTURE(tolerance);
     MethodChoice choice, of_reference;
-    const Result found = eom::integrate("auto", elastic_pendulum, 0, hanging, 2, options_for(tolerance, choice));
+    const Result found = compiled::integrate("auto", elastic_pendulum, 0, hanging, 2, options_for(tolerance, choice));
     const Result reference =
-        eom::integrate("dop853", elastic_pendulum, 0, hanging, 2, options_for(1e-11, of_reference));
+        compiled::integrate("dop853", elastic_pendulum, 0, hanging, 2, options_for(1e-11, of_reference));
     CHECK(choice.method == std::string("radau"));
     CHECK(found.statistics.steps < reference.statistics.steps / 10);
     CHECK(std::abs(found.x[1] - reference.x[1]) < 100 * tolerance);
@@ -121,7 +122,7 @@ TEST_CASE("auto: it changes back while the motion itself is fast, repeatedly") {
     CAPTURE(tolerance);
     MethodChoice choice;
     const Options options = options_for(tolerance, choice);
-    const Result found = eom::integrate("auto", van_der_pol, 0, State{2, 0}, 2, options);
+    const Result found = compiled::integrate("auto", van_der_pol, 0, State{2, 0}, 2, options);
     CHECK(choice.changes.size() >= 5);
     CHECK(choice.changes.size() <= 8);
     CHECK(found.statistics.steps < 600);  // dop853: 6000
@@ -136,9 +137,9 @@ TEST_CASE("auto: at tight tolerances a stiff motion is left to radau, whose step
   for (const double tolerance : {1e-8, 1e-9, 1e-10}) {
     CAPTURE(tolerance);
     MethodChoice choice, none;
-    const Result found = eom::integrate("auto", elastic_pendulum, 0, hanging, 2, options_for(tolerance, choice)),
-                 fifth = eom::integrate("radau5", elastic_pendulum, 0, hanging, 2, options_for(tolerance, none)),
-                 exact = eom::integrate("radau", elastic_pendulum, 0, hanging, 2, options_for(1e-13, none));
+    const Result found = compiled::integrate("auto", elastic_pendulum, 0, hanging, 2, options_for(tolerance, choice)),
+                 fifth = compiled::integrate("radau5", elastic_pendulum, 0, hanging, 2, options_for(tolerance, none)),
+                 exact = compiled::integrate("radau", elastic_pendulum, 0, hanging, 2, options_for(1e-13, none));
     CHECK(choice.method == std::string("radau"));
     CHECK(found.statistics.newton_iterations < fifth.statistics.newton_iterations / 2);
     CHECK(std::abs(found.x[1] - exact.x[1]) < 100 * tolerance);
@@ -154,9 +155,9 @@ TEST_CASE("auto: the implicit method is given up if its steps cost more than tho
   };
   MethodChoice choice;
   const State start(components, 1.0);
-  const Result found = eom::integrate("auto", decays, 0, start, 3, options_for(1e-9, choice));
+  const Result found = compiled::integrate("auto", decays, 0, start, 3, options_for(1e-9, choice));
   MethodChoice of_plain;
-  const Result plain = eom::integrate("dop853", decays, 0, start, 3, options_for(1e-9, of_plain));
+  const Result plain = compiled::integrate("dop853", decays, 0, start, 3, options_for(1e-9, of_plain));
   CHECK(found.outcome == eom::Outcome::done);
   REQUIRE(choice.changes.size() >= 2);
   CHECK(choice.changes[0].to == std::string("radau"));
@@ -188,7 +189,8 @@ TEST_CASE("auto: dense output and events work across changes; the method is kept
   };
   Options options = options_for(1e-9, choice);
   options.max_step = 0.1;  // radau interpolates stiff components by a cubic
-  const Result found = eom::integrate_events("auto", Decay{}, 0, State{1}, 10, options, g,
+  const Decay decay;
+  const Result found = eom::integrate_events("auto", eom::system_of(decay), 0, State{1}, 10, options, g,
                                              {{eom::Direction::any, eom::Watch::breaking}}, handler, see);
   CHECK(found.outcome == eom::Outcome::done);
   REQUIRE(times.size() == 3);
@@ -210,7 +212,7 @@ TEST_CASE("auto: at rough tolerances the trial of radau5 lasts until its step ha
   for (const double tolerance : {5e-4, 2e-4}) {
     CAPTURE(tolerance);
     MethodChoice choice;
-    const Result found = eom::integrate("auto", stiff_pendulum, 0, start, 2, options_for(tolerance, choice));
+    const Result found = compiled::integrate("auto", stiff_pendulum, 0, start, 2, options_for(tolerance, choice));
     CHECK(choice.method == std::string("radau5"));
     CHECK(found.statistics.steps < 1000);  // after a trial of ten steps only: 70000
   }
@@ -239,7 +241,7 @@ TEST_CASE("auto: a motion that is stiff between many events, each followed by a 
   const auto run = [&](const char* method, const Options& options) {
     heater = true;
     switches = 0;
-    return eom::integrate_events(method, thermostat, 0, State{0.4, 0, 20.4}, 9000, options, limits,
+    return eom::integrate_events(method, eom::system_of(thermostat), 0, State{0.4, 0, 20.4}, 9000, options, limits,
                                  {{eom::Direction::any, eom::Watch::breaking}}, handler);
   };
   for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
@@ -259,8 +261,8 @@ TEST_CASE("auto: fixed steps do not change the method; the error for an unknown 
   const problems::Kepler kepler;
   Options options;
   options.fixed_step = 0.05;
-  CHECK(eom::integrate("auto", kepler, 0, kepler.start, 3, options).x ==
-        eom::integrate("dop853", kepler, 0, kepler.start, 3, options).x);
-  CHECK_THROWS_WITH_AS(eom::integrate("automatic", kepler, 0, kepler.start, 1),
+  CHECK(compiled::integrate("auto", kepler, 0, kepler.start, 3, options).x ==
+        compiled::integrate("dop853", kepler, 0, kepler.start, 3, options).x);
+  CHECK_THROWS_WITH_AS(compiled::integrate("automatic", kepler, 0, kepler.start, 1),
                        doctest::Contains("there are auto, rk4"), std::invalid_argument);
 }

@@ -12,3 +12,15 @@ extern template Result integrate_by_name(std::string_view, System&, const Initia
 extern template Result integrate_by_name(std::string_view, System&, const InitialValues&, ObserverRef, AfterStepRef);
 
 }  // namespace eom::detail
+
+namespace compiled {
+
+/// eom::integrate() of rhs as a System: otherwise every explicit method is compiled for each right-hand side.
+/// integrate_test.cpp, order_test.cpp and allocation_test.cpp test those methods.
+template <class F, class Observer = eom::NoObserver, class AfterStep = eom::NoProjection>
+eom::Result integrate(std::string_view method, F&& rhs, double t0, std::span<const double> x0, double t1,
+                      const eom::Options& options = {}, Observer&& observer = {}, AfterStep&& after_step = {}) {
+  return eom::integrate(method, eom::system_of(rhs), t0, x0, t1, options, observer, after_step);
+}
+
+}  // namespace compiled

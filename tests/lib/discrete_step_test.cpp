@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "eom/ode.hpp"
+#include "lib/compiled.hpp"
 #include "lib/discrete_model.hpp"
 #include "lib/problems.hpp"
 
@@ -52,7 +53,7 @@ TEST_CASE("steps as functions: the first step has the bits of a run with fixed s
     options.fixed_step = 0.0625;
     problems::State start{model::x[0], model::x[1]};
     WithNumbers rhs;
-    const auto run = [&](int steps) { return eom::integrate(method, rhs, 0, start, 0.0625 * steps, options).x; };
+    const auto run = [&](int steps) { return compiled::integrate(method, rhs, 0, start, 0.0625 * steps, options).x; };
     Step step(method, model::sizes);
     std::vector<double> x = start;
     for (int k = 0; k < 160; ++k) {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "eom/ode.hpp"
+#include "lib/compiled.hpp"
 #include "lib/problems.hpp"
 #include "support/tolerances.hpp"
 
@@ -49,7 +50,7 @@ TEST_CASE("drift: dop853 keeps the energy of Kepler's problem to 1e-10 over 20 p
   eom::Options options;
   options.rtol = 1e-13;
   options.atol = 1e-14;
-  eom::integrate("dop853", kepler, 0, kepler.start, 125.6, options, [&](const eom::StepView& view) {
+  compiled::integrate("dop853", kepler, 0, kepler.start, 125.6, options, [&](const eom::StepView& view) {
     watch(view.x1);
     return true;
   });
@@ -74,7 +75,7 @@ TEST_CASE("power balance: energy lost to damping is the work done, as a quadratu
   without_work.observe(energy(start), 0);
   eom::Options options;
   options.quadratures = 1;
-  eom::integrate("dop853", rhs, 0, start, 10, options, [&](const eom::StepView& view) {
+  compiled::integrate("dop853", rhs, 0, start, 10, options, [&](const eom::StepView& view) {
     honest.observe(energy(view.x1), view.x1[2]);
     without_work.observe(energy(view.x1), 0);
     return true;

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string>
 
+#include "lib/compiled.hpp"
 #include "lib/problems.hpp"
 #include "support/tolerances.hpp"
 
@@ -31,7 +32,7 @@ void check_tolerances(const Problem& problem, double t1) {
         eom::Options options;
         options.rtol = std::pow(10, -digits);
         options.atol = 1e-2 * options.rtol;
-        const auto result = eom::integrate(method, problem, 0, problem.start, end, options);
+        const auto result = compiled::integrate(method, problem, 0, problem.start, end, options);
         const auto estimate = eom::estimate_error(method, problem, 0, problem.start, result, options);
         CHECK(estimate.outcome == eom::Outcome::done);
         check_estimate(estimate.max, problems::largest_difference(result.x, problem.exact(end)));
@@ -52,7 +53,7 @@ TEST_CASE("estimate: within a factor of 10 for fixed steps, down to rounding") {
     CAPTURE(step);
     eom::Options options;
     options.fixed_step = step;
-    const auto result = eom::integrate("rk4", kepler, 0, kepler.start, 10, options);
+    const auto result = compiled::integrate("rk4", kepler, 0, kepler.start, 10, options);
     const auto estimate = eom::estimate_error("rk4", kepler, 0, kepler.start, result, options);
     check_estimate(estimate.max, problems::largest_difference(result.x, kepler.exact(10)));
   }
@@ -64,13 +65,13 @@ TEST_CASE("estimate: a run of so few steps that a tighter one would repeat them 
   options.rtol = 1e-3;
   options.atol = 1e-6;
   for (const double end : {1.5, 2.2, 2.5}) {
-    const auto result = eom::integrate("dop853", slow, 0, slow.start, end, options);
+    const auto result = compiled::integrate("dop853", slow, 0, slow.start, end, options);
     CAPTURE(result.statistics.steps);
     const auto estimate = eom::estimate_error("dop853", slow, 0, slow.start, result, options);
     check_estimate(estimate.max, problems::largest_difference(result.x, slow.exact(end)));
   }
   options.fixed_step = 10;  // longer than the run: a single step, which half of 10 would repeat
-  const auto result = eom::integrate("rk4", slow, 0, slow.start, 0.5, options);
+  const auto result = compiled::integrate("rk4", slow, 0, slow.start, 0.5, options);
   const auto estimate = eom::estimate_error("rk4", slow, 0, slow.start, result, options);
   check_estimate(estimate.max, problems::largest_difference(result.x, slow.exact(0.5)));
 }
@@ -81,7 +82,7 @@ TEST_CASE("estimate: a run whose steps are all bounded by max_step is repeated w
   options.rtol = 1e-3;
   options.atol = 1e-3;
   options.max_step = 0.02;
-  const auto result = eom::integrate("dopri5", pendulum, 0, pendulum.start, 10, options);
+  const auto result = compiled::integrate("dopri5", pendulum, 0, pendulum.start, 10, options);
   CHECK(result.statistics.steps > 490);
   const auto estimate = eom::estimate_error("dopri5", pendulum, 0, pendulum.start, result, options);
   check_estimate(estimate.max, problems::largest_difference(result.x, pendulum.exact(10)));
@@ -91,11 +92,11 @@ TEST_CASE("estimate: if two runs agree up to rounding a third one is made, and i
   const problems::Oscillator oscillator;
   eom::Options options;
   options.rtol = 1e-6;
-  auto result = eom::integrate("dop853", oscillator, 0, oscillator.start, 10, options);
+  auto result = compiled::integrate("dop853", oscillator, 0, oscillator.start, 10, options);
   CHECK(eom::estimate_error("dop853", oscillator, 0, oscillator.start, result, options).runs == 1);
   options.rtol = 1e-14;
   options.atol = 1e-16;
-  result = eom::integrate("dop853", oscillator, 0, oscillator.start, 10, options);
+  result = compiled::integrate("dop853", oscillator, 0, oscillator.start, 10, options);
   const auto estimate = eom::estimate_error("dop853", oscillator, 0, oscillator.start, result, options);
   CHECK(estimate.runs == 2);
   CHECK(estimate.statistics.rhs_evaluations > 2 * result.statistics.rhs_evaluations);
@@ -106,8 +107,8 @@ TEST_CASE("estimate: for a run that stopped early it is the error at the time re
   const problems::Pendulum pendulum;
   eom::Options options;
   options.rtol = 1e-6;
-  const auto result = eom::integrate("dopri5", pendulum, 0, pendulum.start, 10, options,
-                                     [](const eom::StepView& view) { return view.t1 < 5; });
+  const auto result = compiled::integrate("dopri5", pendulum, 0, pendulum.start, 10, options,
+                                          [](const eom::StepView& view) { return view.t1 < 5; });
   REQUIRE(result.outcome == eom::Outcome::stopped_by_event);
   const auto estimate = eom::estimate_error("dopri5", pendulum, 0, pendulum.start, result, options);
   check_estimate(estimate.max, problems::largest_difference(result.x, pendulum.exact(result.t)));
@@ -116,7 +117,7 @@ TEST_CASE("estimate: for a run that stopped early it is the error at the time re
 TEST_CASE("estimate: infinite, with the outcome reported, if the repeated run fails") {
   const problems::Oscillator oscillator;
   eom::Options options;
-  const auto result = eom::integrate("dopri5", oscillator, 0, oscillator.start, 3, options);
+  const auto result = compiled::integrate("dopri5", oscillator, 0, oscillator.start, 3, options);
   options.max_steps = result.statistics.steps + result.statistics.rejected;  // not enough for the tighter run
   const auto estimate = eom::estimate_error("dopri5", oscillator, 0, oscillator.start, result, options);
   CHECK(std::isinf(estimate.max));
@@ -142,9 +143,9 @@ TEST_CASE("estimate: a tighter run that rounding makes expensive is replaced by 
   const auto cost = [](const eom::Statistics& s) { return static_cast<double>(s.steps + s.rejected); };
   eom::Options options;
   options.rtol = options.atol = 1e-12;
-  const auto result = eom::integrate("dop853", stiff_pendulum, 0, start, 0.1, options);
+  const auto result = compiled::integrate("dop853", stiff_pendulum, 0, start, 0.1, options);
   const auto run = [&](const eom::Options& tighter) {
-    return eom::integrate("dop853", stiff_pendulum, 0, start, result.t, tighter);
+    return compiled::integrate("dop853", stiff_pendulum, 0, start, result.t, tighter);
   };
   const auto bounded = eom::estimate_error(8, 0.0, result, options, run);
   const auto full = eom::estimate_error(8, 0.0, result, options, run, eom::EstimateCost::full);
@@ -166,7 +167,7 @@ TEST_CASE("estimate: chosen steps cost about three times the steps of the run, f
       const problems::Kepler kepler{0.5};
       eom::Options options;
       options.rtol = options.atol = std::pow(10, -digits);
-      const auto result = eom::integrate(method, kepler, 0, kepler.start, 25, options);
+      const auto result = compiled::integrate(method, kepler, 0, kepler.start, 25, options);
       const auto estimate = eom::estimate_error(method, kepler, 0, kepler.start, result, options);
       const auto steps = [](const eom::Statistics& s) { return static_cast<double>(s.steps + s.rejected); };
       CHECK(steps(estimate.statistics) < 3.3 * steps(result.statistics) + 60);

@@ -152,10 +152,10 @@ TEST_CASE("a passing event does not change a bit of the run") {
   const problems::Pendulum pendulum;
   for (const eom::MethodInfo& method : problems::methods()) {
     const eom::Options options = tight(method);
-    const eom::Result plain = eom::integrate(method.name, pendulum, 0, pendulum.start, 12, options);
+    const eom::Result plain = compiled::integrate(method.name, pendulum, 0, pendulum.start, 12, options);
     const auto handler = [](const EventPoint&) { return EventAction::stop; };  // not asked
-    const eom::Result watched = eom::integrate_events(method.name, pendulum, 0, pendulum.start, 12, options, position,
-                                                      {{Direction::any, Watch::passing}}, handler);
+    const eom::Result watched = eom::integrate_events(method.name, eom::system_of(pendulum), 0, pendulum.start, 12,
+                                                      options, position, {{Direction::any, Watch::passing}}, handler);
     CHECK(plain.x == watched.x);
     CHECK(plain.statistics.steps == watched.statistics.steps);
   }
@@ -170,8 +170,8 @@ TEST_CASE("events are as accurate as the steps: the time of a stop has the order
       eom::Options options;
       options.fixed_step = step;
       const auto handler = [](const EventPoint&) { return EventAction::stop; };
-      const eom::Result r = eom::integrate_events(method.name, pendulum, 0, pendulum.start, 12, options, position,
-                                                  {EventFunction{}}, handler);
+      const eom::Result r = eom::integrate_events(method.name, eom::system_of(pendulum), 0, pendulum.start, 12, options,
+                                                  position, {EventFunction{}}, handler);
       CHECK(r.outcome == eom::Outcome::stopped_by_event);
       return std::abs(r.t - pendulum.period() / 4);
     };

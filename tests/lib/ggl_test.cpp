@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "eom/events/integrate.hpp"
+#include "lib/compiled.hpp"
 #include "lib/problems.hpp"
 #include "support/tolerances.hpp"
 
@@ -101,7 +102,7 @@ Options tolerance(double r) {
   options.rtol = options.atol = r;
   return options;
 }
-Result tight(const Rod& f, double t1) { return eom::integrate("dop853", f, 0, f.start(), t1, tolerance(1e-14)); }
+Result tight(const Rod& f, double t1) { return compiled::integrate("dop853", f, 0, f.start(), t1, tolerance(1e-14)); }
 
 }  // namespace
 
@@ -114,7 +115,7 @@ TEST_CASE(
       CAPTURE(f.rows);
       const State right = tight(f, end).x;
       const auto error = [&](double h) {
-        const Result found = eom::integrate("ggl", f, 0, f.start(), end, fixed(h));
+        const Result found = compiled::integrate("ggl", f, 0, f.start(), end, fixed(h));
         CHECK(found.outcome == eom::Outcome::done);
         CHECK(f.defect(end, found.x.data()) < 4e-15);  // some roundings
         return problems::largest_difference(found.x, right);
@@ -123,7 +124,7 @@ TEST_CASE(
       const auto dense = [&](double h) {
         double inside = 0;
         State x(4);
-        eom::integrate("ggl", f, 0, f.start(), std::copysign(h, end), fixed(h), [&](const eom::StepView& view) {
+        compiled::integrate("ggl", f, 0, f.start(), std::copysign(h, end), fixed(h), [&](const eom::StepView& view) {
           for (const double part : {0.15, 0.35, 0.5, 0.8}) {
             const double t = view.t0 + part * (view.t1 - view.t0);
             view.interpolate(t, x);
@@ -141,7 +142,7 @@ TEST_CASE("ggl: order 5 for a velocity constraint alone, against a closed form")
   const Skate f;
   for (const double end : {2.0, -2.0}) {
     const auto error = [&](double h) {
-      return problems::largest_difference(eom::integrate("ggl", f, 0, f.exact(0), end, fixed(h)).x, f.exact(end));
+      return problems::largest_difference(compiled::integrate("ggl", f, 0, f.exact(0), end, fixed(h)).x, f.exact(end));
     };
     CHECK(std::abs(std::log2(error(0.1) / error(0.05)) - 5) < 0.4);
   }
@@ -151,7 +152,7 @@ TEST_CASE("ggl: constraints stay at rounding for 1000 steps and under error cont
   const Rod f{0.1, 3, 2};
   const auto drift = [&](const char* method, double t1, const Options& options) {
     double largest = 0;
-    const Result found = eom::integrate(method, f, 0, f.start(), t1, options, [&](const eom::StepView& view) {
+    const Result found = compiled::integrate(method, f, 0, f.start(), t1, options, [&](const eom::StepView& view) {
       largest = std::max(largest, f.defect(view.t1, view.x1.data()));
       return true;
     });
@@ -171,8 +172,8 @@ TEST_CASE("ggl: the error follows the tolerance, in about the steps of radau5") 
   const State right = tight(f, 10).x;
   for (const double r : {1e-4, 1e-6, 1e-8, 1e-10}) {
     CAPTURE(r);
-    const Result found = eom::integrate("ggl", f, 0, f.start(), 10, tolerance(r)),
-                 plain = eom::integrate("radau5", f, 0, f.start(), 10, tolerance(r));
+    const Result found = compiled::integrate("ggl", f, 0, f.start(), 10, tolerance(r)),
+                 plain = compiled::integrate("radau5", f, 0, f.start(), 10, tolerance(r));
     CHECK(problems::largest_difference(found.x, right) < 20 * r);
     CHECK(found.statistics.steps < 1.2 * static_cast<double>(plain.statistics.steps));
   }
@@ -188,8 +189,8 @@ TEST_CASE("ggl: events of a pendulum in Cartesian coordinates at the times of th
       const auto handler = [&](const eom::EventPoint& point) {
         return times.push_back(point.t), eom::EventAction::resume;
       };
-      const Result found = eom::integrate_events("ggl", f, 0, f.start(), 10 * direction, tolerance(1e-12), g,
-                                                 {{eom::Direction::any, watch}}, handler);
+      const Result found = eom::integrate_events("ggl", eom::system_of(f), 0, f.start(), 10 * direction,
+                                                 tolerance(1e-12), g, {{eom::Direction::any, watch}}, handler);
       CHECK(found.outcome == eom::Outcome::done);
       REQUIRE(times.size() == static_cast<std::size_t>((10 / quarter + 1) / 2));
       for (std::size_t k = 0; k < times.size(); ++k)
@@ -200,12 +201,12 @@ TEST_CASE("ggl: events of a pendulum in Cartesian coordinates at the times of th
 TEST_CASE(
     "ggl: contradictory rows end the run; a start that violates the constraints, and a problem without any, are "
     "refused") {
-  const Result found = eom::integrate("ggl", Rod{0.1, 1, 2, 1e-3}, 0, Rod{}.start(), 1, tolerance(1e-8));
+  const Result found = compiled::integrate("ggl", Rod{0.1, 1, 2, 1e-3}, 0, Rod{}.start(), 1, tolerance(1e-8));
   CHECK(found.outcome == eom::Outcome::step_too_small);
   CHECK(found.t < 1e-4);  // at which the contradiction is detected
   const problems::Kepler kepler;
-  CHECK_THROWS_WITH_AS(eom::integrate("ggl", kepler, 0, kepler.start, 1), doctest::Contains("constraints"),
+  CHECK_THROWS_WITH_AS(compiled::integrate("ggl", kepler, 0, kepler.start, 1), doctest::Contains("constraints"),
                        std::invalid_argument);
-  CHECK_THROWS_WITH_AS(eom::integrate("ggl", Rod{}, 0, State{1, -1, 0, 0}, 1), doctest::Contains("does not meet"),
+  CHECK_THROWS_WITH_AS(compiled::integrate("ggl", Rod{}, 0, State{1, -1, 0, 0}, 1), doctest::Contains("does not meet"),
                        std::invalid_argument);
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "eom/ode.hpp"
+#include "lib/compiled.hpp"
 #include "lib/problems.hpp"
 #include "support/tolerances.hpp"
 
@@ -93,7 +94,7 @@ TEST_CASE("implicit methods: van der Pol with epsilon = 1e-6 in steps determined
     for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
       CAPTURE(std::string(method.name));
       CAPTURE(tolerance);
-      const Result result = eom::integrate(method.name, problem, 0, problem.start, 2, with_tolerance(tolerance));
+      const Result result = compiled::integrate(method.name, problem, 0, problem.start, 2, with_tolerance(tolerance));
       CHECK(result.outcome == eom::Outcome::done);
       CHECK(problems::largest_difference(result.x, problem.end) < 100 * tolerance);
       CHECK(result.statistics.steps < 10'000);
@@ -102,7 +103,7 @@ TEST_CASE("implicit methods: van der Pol with epsilon = 1e-6 in steps determined
     }
   Options options = with_tolerance(1e-4);
   options.max_steps = 100'000;  // explicit methods need ten times as many for stability alone
-  CHECK(eom::integrate("dopri5", problem, 0, problem.start, 2, options).outcome == eom::Outcome::max_steps);
+  CHECK(compiled::integrate("dopri5", problem, 0, problem.start, 2, options).outcome == eom::Outcome::max_steps);
 }
 
 TEST_CASE("implicit methods: x' = lambda (x - cos t) - sin t follows cos t for lambda of -1 to -1e9") {
@@ -119,8 +120,8 @@ TEST_CASE("implicit methods: x' = lambda (x - cos t) - sin t follows cos t for l
         return 0;
       };
       for (const double start : {1.0, 1.5}) {  // on the smooth solution, and beside it
-        const Result result = eom::integrate(method.name, eom::WithJacobian{rhs, jacobian}, 0, problems::State{start},
-                                             10, with_tolerance(1e-8));
+        const Result result = compiled::integrate(method.name, eom::WithJacobian{rhs, jacobian}, 0,
+                                                  problems::State{start}, 10, with_tolerance(1e-8));
         CHECK(result.outcome == eom::Outcome::done);
         // radau5 compares with 1e-8^(2/3) / 10 = 5e-7. For components that lambda damps, the order is that of the
         // estimate.
@@ -137,14 +138,14 @@ TEST_CASE("implicit methods: differences replace df/dx, and are reported") {
   for (const eom::MethodInfo& method : adaptive_implicit()) {
     CAPTURE(std::string(method.name));
     const Options options = with_tolerance(1e-6);
-    const Result given = eom::integrate(method.name, problem, 0, problem.start, 2, options);
-    const Result differences = eom::integrate(method.name, plain, 0, problem.start, 2, options);
+    const Result given = compiled::integrate(method.name, problem, 0, problem.start, 2, options);
+    const Result differences = compiled::integrate(method.name, plain, 0, problem.start, 2, options);
     CHECK(differences.outcome == eom::Outcome::done);
     CHECK(differences.statistics.difference_evaluations >= 2 * differences.statistics.jacobians);
     CHECK(problems::largest_difference(given.x, differences.x) < 1e-4);
     CHECK(differences.statistics.steps < 1.2 * static_cast<double>(given.statistics.steps));
     const Result refused =
-        eom::integrate(method.name, eom::WithJacobian{plain, has_none}, 0, problem.start, 2, options);
+        compiled::integrate(method.name, eom::WithJacobian{plain, has_none}, 0, problem.start, 2, options);
     CHECK(refused.x == differences.x);
     CHECK(refused.statistics.difference_evaluations == differences.statistics.difference_evaluations);
   }
@@ -152,7 +153,7 @@ TEST_CASE("implicit methods: differences replace df/dx, and are reported") {
 
 TEST_CASE("radau5: df/dx and its factors are kept while the iteration converges") {
   const problems::Pendulum pendulum;
-  const Result result = eom::integrate("radau5", pendulum, 0, pendulum.start, 30, with_tolerance(1e-11));
+  const Result result = compiled::integrate("radau5", pendulum, 0, pendulum.start, 30, with_tolerance(1e-11));
   CHECK(2 * result.statistics.jacobians < result.statistics.steps);
   CHECK(result.statistics.factorisations < result.statistics.steps);
   CHECK(result.statistics.newton_iterations < 3 * result.statistics.steps);
@@ -167,7 +168,7 @@ TEST_CASE("implicit methods: a code of the jacobian ends the run like one of the
   };
   for (const eom::MethodInfo& method : adaptive_implicit()) {
     CAPTURE(std::string(method.name));
-    const Result at_once = eom::integrate(method.name, eom::WithJacobian{rhs, jacobian}, 1, problems::State{1}, 2);
+    const Result at_once = compiled::integrate(method.name, eom::WithJacobian{rhs, jacobian}, 1, problems::State{1}, 2);
     CHECK(at_once.outcome == eom::Outcome::singular_mass_matrix);
     CHECK(at_once.t == 1);
   }
@@ -182,7 +183,7 @@ TEST_CASE("radau5: an iteration that cannot converge ends the run, and the reaso
     Options options;
     options.fixed_step = fixed;
     options.max_steps = 100'000;
-    const Result result = eom::integrate("radau5", rough, 0, problems::State{1}, 10, options);
+    const Result result = compiled::integrate("radau5", rough, 0, problems::State{1}, 10, options);
     CHECK(result.outcome != eom::Outcome::done);
     CHECK(result.statistics.newton_failures > 0);
     if (fixed > 0) CHECK(result.detail.find("does not converge") != std::string::npos);

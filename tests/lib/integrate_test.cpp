@@ -9,6 +9,7 @@
 #include <string>
 
 #include "eom/ode.hpp"
+#include "lib/compiled.hpp"
 #include "lib/problems.hpp"
 #include "support/tolerances.hpp"
 
@@ -61,7 +62,7 @@ TEST_CASE("fixed steps: their number is the quotient, without a sliver from roun
   const auto steps = [&](double t1, double step) {
     eom::Options options;
     options.fixed_step = step;
-    const eom::Result result = eom::integrate("rk4", oscillator, 0, oscillator.start, t1, options);
+    const eom::Result result = compiled::integrate("rk4", oscillator, 0, oscillator.start, t1, options);
     CHECK(result.t == t1);
     return result.statistics.steps;
   };
@@ -79,7 +80,7 @@ TEST_CASE("rk4: 4 evaluations a step and one at the start; dopri5: 6; dop853: 12
   eom::Options options;
   options.fixed_step = 0.1;
   const auto evaluations = [&](const char* method, auto observe) {
-    return eom::integrate(method, oscillator, 0, oscillator.start, 1, options, observe).statistics.rhs_evaluations;
+    return compiled::integrate(method, oscillator, 0, oscillator.start, 1, options, observe).statistics.rhs_evaluations;
   };
   CHECK(evaluations("rk4", eom::NoObserver{}) == 41);
   CHECK(evaluations("dopri5", eom::NoObserver{}) == 61);
@@ -116,7 +117,7 @@ TEST_CASE("observer: receives adjacent steps from t0 to t1, and the dense output
       ++seen;
       return true;
     };
-    const eom::Result result = eom::integrate(method.name, kepler, 0, kepler.start, 3, options, observe);
+    const eom::Result result = compiled::integrate(method.name, kepler, 0, kepler.start, 3, options, observe);
     CHECK(t == 3);
     CHECK(x == result.x);
     CHECK(seen == result.statistics.steps);
@@ -139,7 +140,7 @@ TEST_CASE("dense output: between the steps it is as accurate as the steps themse
       }
       return true;
     };
-    eom::integrate(method, kepler, 0, kepler.start, 6, {}, observe);
+    compiled::integrate(method, kepler, 0, kepler.start, 6, {}, observe);
     CHECK(between < 10 * at_steps);
   }
 }
@@ -161,9 +162,9 @@ TEST_CASE("after_step: the run continues from the changed state, with its deriva
       return 0;
     };
     const problems::State start{1, 1};
-    const auto moved = eom::integrate(method.name, rhs, 0, start, 2, options, eom::NoObserver{}, switch_at_one);
-    const auto first = eom::integrate(method.name, rhs, 0, start, 1, options);
-    const auto second = eom::integrate(method.name, rhs, 1, problems::State{first.x[0], 2}, 2, options);
+    const auto moved = compiled::integrate(method.name, rhs, 0, start, 2, options, eom::NoObserver{}, switch_at_one);
+    const auto first = compiled::integrate(method.name, rhs, 0, start, 1, options);
+    const auto second = compiled::integrate(method.name, rhs, 1, problems::State{first.x[0], 2}, 2, options);
     CHECK(std::abs(moved.x[0] - second.x[0]) < tolerances::rounding * second.x[0]);
   }
 }
@@ -183,9 +184,9 @@ TEST_CASE("quadratures: trailing components are integrated, but do not affect th
     CAPTURE(std::string(method));
     eom::Options options;
     options.quadratures = 1;
-    const auto a = eom::integrate(method, with, 0, problems::State{1, 0}, 3, options);
+    const auto a = compiled::integrate(method, with, 0, problems::State{1, 0}, 3, options);
     options.quadratures = 0;
-    const auto b = eom::integrate(method, without, 0, problems::State{1}, 3, options);
+    const auto b = compiled::integrate(method, without, 0, problems::State{1}, 3, options);
     CHECK(a.statistics.steps == b.statistics.steps);
     CHECK(a.x[0] == b.x[0]);
     CHECK(std::abs(a.x[1] / (1e9 * (1 - std::exp(-3.0))) - 1) < tolerances::closed_form);
@@ -205,7 +206,7 @@ TEST_CASE("options: max_step and initial_step are respected") {
     longest = std::max(longest, view.t1 - view.t0);
     return true;
   };
-  eom::integrate("dop853", oscillator, 0, oscillator.start, 10, options, observe);
+  compiled::integrate("dop853", oscillator, 0, oscillator.start, 10, options, observe);
   CHECK(first == 0.0625);
   CHECK(longest <= 0.125 * (1 + 0.02));  // the last step may be stretched by 1 %
 }
@@ -241,7 +242,7 @@ TEST_CASE(
       longest = std::max(longest, step.t1 - step.t0);
       return true;
     };
-    const eom::Result result = eom::integrate(info.name, rhs, 0, problems::State{1, 0}, 1, options, observer);
+    const eom::Result result = compiled::integrate(info.name, rhs, 0, problems::State{1, 0}, 1, options, observer);
     CHECK(result.outcome == eom::Outcome::done);
     CHECK(off < 1e-3);  // midpoint: h^2/12 of the phase
     CHECK(refused > 0);
@@ -266,7 +267,7 @@ TEST_CASE("dense output: if an additional stage fails it falls back to the cubic
       CHECK(std::abs(x[0] - std::pow(view.t0 + 0.5, 3)) < tolerances::rounding);
       return true;
     };
-    const auto result = eom::integrate("dop853", rhs, 0, problems::State{0}, 2, options, observe);
+    const auto result = compiled::integrate("dop853", rhs, 0, problems::State{0}, 2, options, observe);
     CHECK(result.outcome == eom::Outcome::done);
     CHECK(result.statistics.dense_fallbacks == 1);
   }
@@ -285,7 +286,7 @@ TEST_CASE("tolerances: purely relative ones work for components that start or re
   options.atol = 0;
   for (const char* method : problems::adaptive_methods()) {
     CAPTURE(std::string(method));
-    auto result = eom::integrate(method, rhs, 0, start, 3, options);
+    auto result = compiled::integrate(method, rhs, 0, start, 3, options);
     CHECK(result.outcome == eom::Outcome::done);
     // Error per step h^(order + 1): many steps of rtol^(-1/order), without collapse if a component is 0.
     const int order = std::max(1, eom::find_method(method)->order);
@@ -297,7 +298,7 @@ TEST_CASE("tolerances: purely relative ones work for components that start or re
 
 TEST_CASE("equal start and end times: done at once, with the start state") {
   const problems::Oscillator oscillator;
-  const auto result = eom::integrate("dop853", oscillator, 2, oscillator.start, 2);
+  const auto result = compiled::integrate("dop853", oscillator, 2, oscillator.start, 2);
   CHECK(result.outcome == eom::Outcome::done);
   CHECK(result.x == oscillator.start);
 }
@@ -307,7 +308,7 @@ TEST_CASE(
   const problems::Oscillator oscillator;
   eom::Options options;
   options.fixed_step = 1e-5;
-  const auto result = eom::integrate("rk4", oscillator, 0, oscillator.start, 10, options);
+  const auto result = compiled::integrate("rk4", oscillator, 0, oscillator.start, 10, options);
   CHECK(problems::largest_difference(result.x, oscillator.exact(10)) < 100 * tolerances::epsilon);
 }
 
@@ -315,7 +316,7 @@ TEST_CASE("invalid input is refused, and the message names the cause") {
   const problems::Oscillator oscillator;
   const auto refuses = [&](const char* method, const eom::Options& options, std::string_view word) {
     try {
-      eom::integrate(method, oscillator, 0, oscillator.start, 1, options);
+      compiled::integrate(method, oscillator, 0, oscillator.start, 1, options);
     } catch (const std::invalid_argument& error) {
       return std::string(error.what()).find(word) != std::string::npos;
     }

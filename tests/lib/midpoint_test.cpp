@@ -6,6 +6,7 @@
 #include <string>
 
 #include "eom/ode.hpp"
+#include "lib/compiled.hpp"
 #include "lib/problems.hpp"
 #include "support/tolerances.hpp"
 
@@ -36,7 +37,7 @@ double drift(const char* method, int steps) {
                         std::abs(momentum(view.x1.data()) - momentum(start.data()))});
     return true;
   };
-  eom::integrate(method, free_body, 0, start, 0.1 * steps, fixed_steps(0.1), observe);
+  compiled::integrate(method, free_body, 0, start, 0.1 * steps, fixed_steps(0.1), observe);
   return largest;
 }
 
@@ -45,8 +46,8 @@ double drift(const char* method, int steps) {
 TEST_CASE("midpoint: a step forward and back is the identity up to rounding; for rk4 it is not") {
   const problems::Pendulum pendulum;
   const auto miss = [&](const char* method) {
-    const eom::Result there = eom::integrate(method, pendulum, 0, pendulum.start, 100, fixed_steps(0.125));
-    return problems::largest_difference(eom::integrate(method, pendulum, 100, there.x, 0, fixed_steps(0.125)).x,
+    const eom::Result there = compiled::integrate(method, pendulum, 0, pendulum.start, 100, fixed_steps(0.125));
+    return problems::largest_difference(compiled::integrate(method, pendulum, 100, there.x, 0, fixed_steps(0.125)).x,
                                         pendulum.start);
   };
   CHECK(miss("midpoint") < 1e-12);  // 1600 steps, each of some roundings
@@ -61,7 +62,7 @@ TEST_CASE("midpoint: both quadratic invariants of a free body are preserved for 
 TEST_CASE("midpoint: the area of a triangle of neighbouring states of a pendulum is preserved (symplectic)") {
   const problems::Pendulum pendulum;
   const auto mapped = [&](double theta, double rate) {
-    return eom::integrate("midpoint", pendulum, 0, problems::State{theta, rate}, 10, fixed_steps(0.25)).x;
+    return compiled::integrate("midpoint", pendulum, 0, problems::State{theta, rate}, 10, fixed_steps(0.25)).x;
   };
   // the determinant of the flow's derivative by central differences: an error of 1e-8 from their step of 1e-4
   constexpr double by = 1e-4;
@@ -78,8 +79,8 @@ TEST_CASE("midpoint: no differences are computed if the jacobian is given") {
     dfdx[2] = 1;
     return 0;
   };
-  const auto result =
-      eom::integrate("midpoint", eom::WithJacobian{oscillator, jacobian}, 0, oscillator.start, 10, fixed_steps(0.01));
+  const auto result = compiled::integrate("midpoint", eom::WithJacobian{oscillator, jacobian}, 0, oscillator.start, 10,
+                                          fixed_steps(0.01));
   CHECK(result.statistics.difference_evaluations == 0);
   CHECK(result.statistics.jacobians == 1);  // linear: one serves for all steps
   CHECK(problems::largest_difference(result.x, oscillator.exact(10)) < 1e-4);
@@ -107,11 +108,11 @@ TEST_CASE(
   for (const char* method : {"midpoint", "radau5", "radau"}) {
     CAPTURE(std::string(method));
     const double h = 1e-12;  // along the fast vibration
-    const eom::Result fast = eom::integrate(method, f, 0, start, 1000 * h, fixed_steps(h));
+    const eom::Result fast = compiled::integrate(method, f, 0, start, 1000 * h, fixed_steps(h));
     CHECK(fast.outcome == eom::Outcome::done);
     // 1e9 in 1e-9: a phase of 1 in 1000 steps, with an error of h^2/12 per phase for order 2
     CHECK(std::abs(fast.x[3] - 1e-6 * std::cos(1.0)) < 1e-6 * (method == std::string("midpoint") ? 1e-7 : 1e-12));
-    const eom::Result slow = eom::integrate(
+    const eom::Result slow = compiled::integrate(
         method,
         [&](double t, const double* x, double* dx) {
           f(t, x, dx);

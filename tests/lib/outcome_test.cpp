@@ -7,6 +7,7 @@
 #include <string>
 
 #include "eom/ode.hpp"
+#include "lib/compiled.hpp"
 #include "lib/problems.hpp"
 
 namespace {
@@ -26,7 +27,7 @@ template <class F>
 eom::Result run(const char* method, F rhs, double t1, eom::Options options = {}, double x0 = 1) {
   for (const eom::MethodInfo& info : problems::methods())
     if (std::string(method) == info.name && !info.adaptive && options.fixed_step == 0) options.fixed_step = 0.01;
-  return eom::integrate(method, rhs, 0, problems::State{x0}, t1, options);
+  return compiled::integrate(method, rhs, 0, problems::State{x0}, t1, options);
 }
 
 }  // namespace
@@ -129,7 +130,7 @@ TEST_CASE("step_too_small: a pole of the motion, x' = x^2, and a fixed step lost
 TEST_CASE("stopped_by_event: at the end of the step at which the observer returns false") {
   const problems::Oscillator oscillator;
   const auto below_zero = [](const eom::StepView& view) { return view.x1[0] > 0; };
-  const auto result = eom::integrate("dopri5", oscillator, 0, oscillator.start, 10, {}, below_zero);
+  const auto result = compiled::integrate("dopri5", oscillator, 0, oscillator.start, 10, {}, below_zero);
   CHECK(result.outcome == eom::Outcome::stopped_by_event);
   CHECK(result.x[0] <= 0);
   CHECK(result.t < 3);
@@ -145,14 +146,15 @@ TEST_CASE("interrupted: at the next step after the flag is set") {
     if (++steps == 5) flag = true;
     return true;
   };
-  const auto result = eom::integrate("dop853", oscillator, 0, oscillator.start, 100, options, observe);
+  const auto result = compiled::integrate("dop853", oscillator, 0, oscillator.start, 100, options, observe);
   CHECK(result.outcome == eom::Outcome::interrupted);
   CHECK(result.statistics.steps == 5);
 }
 
 TEST_CASE("a projection that fails ends the run with its code's outcome after shorter steps were tried") {
   const auto fails = [](double t, double*) { return t > 1 ? -1 : 0; };
-  const auto result = eom::integrate("dopri5", FailsFromOne{0}, 0, problems::State{1}, 2, {}, eom::NoObserver{}, fails);
+  const auto result =
+      compiled::integrate("dopri5", FailsFromOne{0}, 0, problems::State{1}, 2, {}, eom::NoObserver{}, fails);
   CHECK(result.outcome == eom::Outcome::step_too_small);
   CHECK(result.detail.find("-1") != std::string::npos);
   CHECK(std::abs(result.t - 1) < 1e-12);

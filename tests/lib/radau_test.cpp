@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "eom/implicit/radau_tableau.hpp"
+#include "lib/compiled.hpp"
 #include "lib/problems.hpp"
 
 namespace {
@@ -87,7 +88,7 @@ TEST_CASE("radau: orders 5, 9 and 13 in both directions of time, dense output of
           }
           return true;
         };
-        const Result result = eom::integrate("radau", f, 0, f.start, end, options, see);
+        const Result result = compiled::integrate("radau", f, 0, f.start, end, options, see);
         CHECK(result.outcome == eom::Outcome::done);
         return problems::largest_difference(result.x, f.exact(end));
       };
@@ -99,7 +100,7 @@ TEST_CASE("radau: orders 5, 9 and 13 in both directions of time, dense output of
     }
   Options options;
   options.series_order = 7;
-  CHECK_THROWS_WITH_AS(eom::integrate("radau", f, 0, f.start, 1, options), doctest::Contains("5, 9 or 13"),
+  CHECK_THROWS_WITH_AS(compiled::integrate("radau", f, 0, f.start, 1, options), doctest::Contains("5, 9 or 13"),
                        std::invalid_argument);
 }
 
@@ -109,8 +110,8 @@ TEST_CASE("radau: at tight tolerances it needs a fifth of the steps of radau5 fo
     CAPTURE(tolerance);
     Options options;
     options.rtol = options.atol = tolerance;
-    const Result found = eom::integrate("radau", f, 0, f.start, 2, options),
-                 plain = eom::integrate("radau5", f, 0, f.start, 2, options);
+    const Result found = compiled::integrate("radau", f, 0, f.start, 2, options),
+                 plain = compiled::integrate("radau5", f, 0, f.start, 2, options);
     CHECK(found.outcome == eom::Outcome::done);
     CHECK(problems::largest_difference(found.x, f.end) < 2 * tolerance);
     CHECK(found.statistics.rhs_evaluations < plain.statistics.rhs_evaluations);
@@ -135,7 +136,7 @@ TEST_CASE(
     options.rtol = 1e-9;
     options.atol = 1e-12;
     double first = 0, fastest = 0;
-    eom::integrate(method, spring, 0, State{0, -0.5}, 1, options, [&](const eom::StepView& step) {
+    compiled::integrate(method, spring, 0, State{0, -0.5}, 1, options, [&](const eom::StepView& step) {
       if (first == 0) first = step.t1 - step.t0;
       fastest = std::max(fastest, std::abs(step.x1[1]));
       return step.t1 < 3.2 / omega;  // across the impact

@@ -8,6 +8,7 @@
 
 #include "eom/error_estimate.hpp"
 #include "eom/modes/machine.hpp"
+#include "lib/compiled.hpp"
 #include "lib/series_problems.hpp"
 #include "support/tolerances.hpp"
 
@@ -32,8 +33,8 @@ std::pair<double, double> errors(int order, double direction, double step) {
     }
     return true;
   };
-  const auto result = eom::integrate("taylor", pendulum, series_start, pendulum.exact(series_start),
-                                     series_start + direction * 6, options, observe);
+  const auto result = compiled::integrate("taylor", pendulum, series_start, pendulum.exact(series_start),
+                                          series_start + direction * 6, options, observe);
   REQUIRE(result.outcome == eom::Outcome::done);
   return {ends, between};
 }
@@ -62,7 +63,7 @@ TEST_CASE("taylor: the tolerance is met by orders that grow with its digits, wit
     eom::Options options;
     options.rtol = rtol;
     options.atol = rtol;
-    const auto result = eom::integrate("taylor", kepler, 0, kepler.start, 20, options);
+    const auto result = compiled::integrate("taylor", kepler, 0, kepler.start, 20, options);
     REQUIRE(result.outcome == eom::Outcome::done);
     const double error = problems::largest_difference(result.x, kepler.exact(20));
     CHECK(error < 3000 * rtol);  // the phase error of an orbit is its energy error times 3 t/2 and times 1/(1 -
@@ -78,12 +79,12 @@ TEST_CASE("taylor: integration to an end and back, and its own error estimate") 
   const problems::PendulumSeries pendulum;
   eom::Options options;
   options.rtol = options.atol = 1e-13;
-  const auto there = eom::integrate("taylor", pendulum, 0, pendulum.start, 30, options);
-  const auto back = eom::integrate("taylor", pendulum, 30, there.x, 0, options);
+  const auto there = compiled::integrate("taylor", pendulum, 0, pendulum.start, 30, options);
+  const auto back = compiled::integrate("taylor", pendulum, 30, there.x, 0, options);
   CHECK(problems::largest_difference(back.x, pendulum.start) <
         1e-10);  // the phase error is the energy error times the time
   options.rtol = options.atol = 1e-6;
-  const auto rough = eom::integrate("taylor", pendulum, 0, pendulum.start, 30, options);
+  const auto rough = compiled::integrate("taylor", pendulum, 0, pendulum.start, 30, options);
   const auto estimate = eom::estimate_error("taylor", pendulum, 0, pendulum.start, rough, options);
   const double error = problems::largest_difference(rough.x, pendulum.exact(30));
   CHECK(error < tolerances::estimate_factor * estimate.max);
@@ -96,7 +97,7 @@ TEST_CASE("taylor: fixed steps raise the order until the tolerance is met") {
   options.fixed_step = 0.5;
   for (const double tolerance : {1e-6, 1e-12}) {
     options.rtol = options.atol = tolerance;
-    const auto result = eom::integrate("taylor", pendulum, 0, pendulum.start, 10, options);
+    const auto result = compiled::integrate("taylor", pendulum, 0, pendulum.start, 10, options);
     CHECK(result.statistics.steps == 20);
     CHECK(problems::largest_difference(result.x, pendulum.exact(10)) < 100 * tolerance);
   }
@@ -114,7 +115,7 @@ TEST_CASE("taylor: events agree with the closed form") {
     ++passed;
     return passed == 5 ? eom::EventAction::stop : eom::EventAction::restart;
   };
-  const auto result = eom::integrate_events("taylor", pendulum, 0, pendulum.start, 100, options, g,
+  const auto result = eom::integrate_events("taylor", eom::system_of(pendulum), 0, pendulum.start, 100, options, g,
                                             {{eom::Direction::any, eom::Watch::breaking}}, at);
   CHECK(passed == 5);
   CHECK(result.outcome == eom::Outcome::stopped_by_event);
@@ -176,7 +177,7 @@ TEST_CASE("taylor: components without a series are integrated as quadratures") {
     worst = std::max(worst, std::abs(x[0] - std::exp(-0.5 * (view.t0 + view.t1))));
     return true;
   };
-  const auto result = eom::integrate("taylor", SeriesDecay{}, 0, std::vector<double>{1, 0}, 3, options, see);
+  const auto result = compiled::integrate("taylor", SeriesDecay{}, 0, std::vector<double>{1, 0}, 3, options, see);
   CHECK(std::abs(result.x[0] - std::exp(-3)) < 1e-12);
   CHECK(std::abs(result.x[1] - (1 - std::exp(-6)) / 2) < 1e-12);
   CHECK(worst < 1e-12);
@@ -184,10 +185,10 @@ TEST_CASE("taylor: components without a series are integrated as quadratures") {
 
 TEST_CASE("taylor: a right-hand side without a series, and unavailable orders, are refused") {
   const problems::Pendulum plain;
-  CHECK_THROWS_WITH_AS(eom::integrate("taylor", plain, 0, plain.start, 1), doctest::Contains("Taylor series"),
+  CHECK_THROWS_WITH_AS(compiled::integrate("taylor", plain, 0, plain.start, 1), doctest::Contains("Taylor series"),
                        std::invalid_argument);
   const problems::PendulumSeries pendulum;
   eom::Options options;
   options.series_order = problems::hand_order + 1;
-  CHECK_THROWS_AS(eom::integrate("taylor", pendulum, 0, pendulum.start, 1, options), std::invalid_argument);
+  CHECK_THROWS_AS(compiled::integrate("taylor", pendulum, 0, pendulum.start, 1, options), std::invalid_argument);
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "eom/events/integrate.hpp"
+#include "lib/compiled.hpp"
 #include "lib/problems.hpp"
 
 namespace {
@@ -113,7 +114,7 @@ State reference(const F& f, const State& start, double t1, std::size_t quadratur
   Options options;
   options.rtol = options.atol = 1e-14;
   options.quadratures = quadratures;
-  return eom::integrate("dop853", f, 0, start, t1, options).x;
+  return compiled::integrate("dop853", f, 0, start, t1, options).x;
 }
 
 template <class F>
@@ -126,7 +127,7 @@ void check_order(const F& f, const State& start, std::size_t quadratures) {
       const State right = reference(f, start, end, quadratures);
       const double h = method.order == 2 ? 0.005 : method.order == 4 ? 0.01 : 0.015;
       const auto error = [&](double step) {
-        const Result result = eom::integrate(method.name, f, 0, start, end, fixed_step(step, quadratures));
+        const Result result = compiled::integrate(method.name, f, 0, start, end, fixed_step(step, quadratures));
         CHECK(result.outcome == eom::Outcome::done);
         return problems::largest_difference(result.x, right);
       };
@@ -164,12 +165,12 @@ TEST_CASE("variational: a step back undoes a step, and constraints hold to round
   const RodMotion rod{0};
   for (const eom::MethodInfo& method : variational()) {
     CAPTURE(std::string(method.name));
-    const Result there = eom::integrate(method.name, rod, 0, rod_start, 20, fixed_step(0.1, 1));
+    const Result there = compiled::integrate(method.name, rod, 0, rod_start, 20, fixed_step(0.1, 1));
     double psi, A[2], b;
     rod.constrain(20, there.x.data(), &psi, A, &b);
     CHECK(std::abs(psi) < 1e-14);
     CHECK(std::abs(A[0] * there.x[2] + A[1] * there.x[3] + b) < 1e-13);
-    const Result back = eom::integrate(method.name, rod, 20, there.x, 0, fixed_step(0.1, 1));
+    const Result back = compiled::integrate(method.name, rod, 20, there.x, 0, fixed_step(0.1, 1));
     CHECK(problems::largest_difference(back.x, rod_start) <
           1e-10);  // 400 steps, each with several roundings, of a motion that amplifies them
   }
@@ -198,7 +199,7 @@ TEST_CASE("variational: the map of a step preserves dq ^ dp; that of dopri5 does
       const auto moved = [&](double part) {
         State z = start;
         z[j] += part * by;
-        return to_momenta(eom::integrate(method, f, 0, from_momenta(z), 0.5, fixed_step(0.1)).x);
+        return to_momenta(compiled::integrate(method, f, 0, from_momenta(z), 0.5, fixed_step(0.1)).x);
       };
       const State a = moved(1), b = moved(-1), c = moved(2), d = moved(-2);
       for (std::size_t i = 0; i < 4; ++i) J[i][j] = (8 * (a[i] - b[i]) - (c[i] - d[i])) / (12 * by);
@@ -224,7 +225,7 @@ TEST_CASE("variational: energy errors are bounded and do not grow, also along a 
     const State start{1.2, 0.3, 0, 0};
     const auto drift = [&](double end) {
       double worst = 0;
-      eom::integrate(method.name, f, 0, start, end, fixed_step(0.02), [&](const eom::StepView& view) {
+      compiled::integrate(method.name, f, 0, start, end, fixed_step(0.02), [&](const eom::StepView& view) {
         worst = std::max(worst, std::abs(f.energy(view.x1.data()) - f.energy(start.data())));
         return true;
       });
@@ -243,15 +244,17 @@ TEST_CASE("variational: events are found, and a right-hand side without momenta 
     const auto handler = [&](const eom::EventPoint& point) {
       return times.push_back(point.t), eom::EventAction::resume;
     };
-    const Result result = eom::integrate_events(method.name, DoublePendulum{}, 0, swinging, 2, fixed_step(0.001),
-                                                position, {{eom::Direction::down, eom::Watch::breaking}}, handler);
+    const DoublePendulum pendulum;
+    const Result result =
+        eom::integrate_events(method.name, eom::system_of(pendulum), 0, swinging, 2, fixed_step(0.001), position,
+                              {{eom::Direction::down, eom::Watch::breaking}}, handler);
     CHECK(result.outcome == eom::Outcome::done);
     REQUIRE(!times.empty());
     CHECK(std::abs(reference(DoublePendulum{}, swinging, times[0], 0)[0]) < 1e-5);  // the error of steps of order 2
     const problems::Kepler kepler;
-    CHECK_THROWS_WITH_AS(eom::integrate(method.name, kepler, 0, kepler.start, 1, fixed_step(0.1)),
+    CHECK_THROWS_WITH_AS(compiled::integrate(method.name, kepler, 0, kepler.start, 1, fixed_step(0.1)),
                          doctest::Contains("momenta"), std::invalid_argument);
-    CHECK_THROWS_WITH_AS(eom::integrate(method.name, DoublePendulum{}, 0, swinging, 1), doctest::Contains("fixed_step"),
-                         std::invalid_argument);
+    CHECK_THROWS_WITH_AS(compiled::integrate(method.name, DoublePendulum{}, 0, swinging, 1),
+                         doctest::Contains("fixed_step"), std::invalid_argument);
   }
 }
