@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <eom/hybrid/stepwise_run.hpp>
+#include <eom/hybrid/methods.hpp>
 
 #include "eomgen/compiled_state.hpp"
 #include "eomgen/motion_event.hpp"
@@ -13,6 +13,7 @@
 #include "lists.hpp"
 #include "model/names.hpp"
 #include "run/eligibility.hpp"
+#include "run/integration.hpp"
 #include "run/methods.hpp"
 #include "run/monitored_functions.hpp"
 
@@ -52,10 +53,11 @@ eom::hybrid::Signal held(double t, double value) { return {{}, {t}, {value}, {}}
 
 struct SimulationState::Data {
   std::shared_ptr<const CompiledModel::State> model;
-  eom::hybrid::StepwiseRun::State run;
+  double t;
+  std::shared_ptr<const run::StepwiseState> run;
 };
 
-double SimulationState::t() const { return data_->run.t; }
+double SimulationState::t() const { return data_->t; }
 
 struct Simulation::Data {
   Data(const CompiledModel& compiled, const SimulationOptions& options);
@@ -70,7 +72,7 @@ struct Simulation::Data {
   std::function<void(double t, std::span<const double> values)> row;
   double every;            // interval of rows, s; 0: no rows
   Advance* now = nullptr;  // the advance in progress
-  eom::hybrid::StepwiseRun run;
+  run::StepwiseRun run;
   std::vector<double> parameters;
 };
 
@@ -120,11 +122,10 @@ Advance Simulation::Data::advance(double t_end, bool one_step, const CallControl
     Advance result;
     now = &result;
     const work::DeferInterrupt kept;
-    eom::hybrid::StepwiseRun::Piece piece{one_step, call.stopped(), {}};
-    piece.event = [&result](const eom::hybrid::Event& event, std::span<const double>) {
+    const auto keep = [&result](const eom::hybrid::Event& event, std::span<const double>) {
       result.events.push_back(motion_event(event));
     };
-    const eom::Result end = run.advance(t_end, piece);
+    const eom::Result end = run.advance(t_end, one_step, call.stopped(), keep);
     result.outcome = eom::name(end.outcome);
     result.detail = end.detail;
     result.t = end.t;
@@ -220,14 +221,14 @@ void Simulation::set_state(double t, std::span<const double> x) {
 
 SimulationState Simulation::save() const {
   return SimulationState(
-      std::make_shared<const SimulationState::Data>(SimulationState::Data{data_->model, data_->run.save()}));
+      std::make_shared<const SimulationState::Data>(SimulationState::Data{data_->model, t(), data_->run.save()}));
 }
 
 void Simulation::restore(const SimulationState& from) {
   if (from.data_->model != data_->model)
     throw Error("simulation", {}, "the state belongs to another compiled model",
                 "restore it into a simulation of the CompiledModel that it was saved from");
-  data_->run.restore(from.data_->run);
+  data_->run.restore(*from.data_->run);
   data_->parameters.assign(data_->run.parameters().begin(), data_->run.parameters().end());
 }
 
