@@ -86,7 +86,8 @@ std::string locate_model(const std::string& name) {
     if (fs::exists(file, error) && !fs::is_directory(file, error)) return file;
   }
   const std::vector<fs::path> folders = model_folders();
-  if (name.find('/') == std::string::npos) {
+  const fs::path typed(name);  // large/NAME is one of theirs, too
+  if (typed.is_relative() && std::find(typed.begin(), typed.end(), "..") == typed.end()) {
     for (const fs::path& folder : folders) {
       for (const std::string& file : {name, name + ".toml"}) {
         if (fs::is_regular_file(folder / file, error)) return (folder / file).string();
