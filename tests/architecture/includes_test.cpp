@@ -275,9 +275,10 @@ TEST_CASE("commands and the library get compiled code and runs from pipeline::Co
       {"emit/shared_library/loaded_batch.hpp", {}},
       {"emit/shared_library/build.hpp", {"bench/libraries.cpp"}},  // adapters of other libraries, no models
       {"run/bind.hpp", {"stress/start.cpp"}},                      // constraints of a start
-      // Requests of BoundRun, observed step by step.
+      // Requests of BoundRun, observed step by step, and simulations in pieces.
       {"run/integration.hpp",
-       {"analysis/benchmark.cpp", "analysis/stress_test.cpp", "bench/measure.cpp", "stress/reference_solution.hpp"}},
+       {"analysis/benchmark.cpp", "analysis/stress_test.cpp", "bench/measure.cpp", "eomgen/simulation.cpp",
+        "stress/reference_solution.hpp"}},
   };
   std::map<std::string, std::set<std::string>> found;
   for (const char* folder : {"cli", "analysis", "bench", "stress", "eomgen"}) {
