@@ -184,7 +184,8 @@ TEST_CASE("slip start: a table that turns as it begins to slip") {
       CHECK(number_of(run, "slip") == 3);
       CHECK(std::abs(events_of(run)[0].t - 1.4423443) < 1e-7);
       CHECK(std::abs(run.final("p") - 0.15070243) < 1e-8 + 100 * rtol);
-      CHECK(run.simulation.result.statistics.steps < (solver == "auto" ? 1500 : 40000));
+      // At 1e-11 rounding decides how often the solver changes: 800 to 1700 steps with masses from 2.9999 to 3.0001.
+      CHECK(run.simulation.result.statistics.steps < (solver != "auto" ? 40000 : rtol < 1e-9 ? 2500 : 200));
     }
   }
   const std::string four =
