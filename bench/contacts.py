@@ -88,8 +88,8 @@ def main():
         sys.exit(__doc__)
     if sys.argv[2:3] == ["--independent"]:
         return independent(sys.argv[1], [int(argument) for argument in sys.argv[3:]] or [1, 10, 50, 100])
-    print("| discs | contacts | outcome | steps | events | us per step | free: us per step | without: us per step |")
-    print("|---|---|---|---|---|---|---|---|")
+    print("| discs | contacts | outcome | t, s | steps | events | impacts | us per step | free: us per step | without: us per step |")
+    print("|---|---|---|---|---|---|---|---|---|---|")
     for discs in [int(argument) for argument in sys.argv[2:]] or [1, 3, 10, 20]:
         pile = run(sys.argv[1], model(discs, 0.06))
         free = run(sys.argv[1], model(discs, 10))
@@ -99,8 +99,9 @@ def main():
             return 1e6 * result["seconds"]["integrate"] / max(1, result["steps"])
 
         contacts = discs * (discs - 1) // 2 + 3 * discs
-        print(f"| {discs} | {contacts} | {pile['outcome']} | {pile['steps']} | "
-              f"{len(pile['events'])} | {per_step(pile):.1f} | {per_step(free):.1f} | {per_step(without):.1f} |")
+        impacts = sum(event.get("impacts", 1) for event in pile["events"] if event["kind"] == "contact")
+        print(f"| {discs} | {contacts} | {pile['outcome']} | {pile['t']:.3g} | {pile['steps']} | "
+              f"{len(pile['events'])} | {impacts} | {per_step(pile):.1f} | {per_step(free):.1f} | {per_step(without):.1f} |")
 
 
 if __name__ == "__main__":

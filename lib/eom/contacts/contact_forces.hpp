@@ -3,8 +3,8 @@
 // forces, a state. Out: the forces with which closed contacts stay closed and sticking ones stick; the quantities from
 // which the next set follows.
 //
-// The accelerations are affine in the forces. One evaluation of the right-hand side for each unknown force gives their
-// slopes, in every formulation of the equations. Dependent rows (four corners on a plane) have forces within
+// The accelerations are affine in the forces. Evaluations of the right-hand side with unit forces give their slopes, in
+// every formulation of the equations (unit_responses.hpp). Dependent rows (four corners on a plane) have forces within
 // their laws, if there are any (admissible_forces.hpp).
 #pragma once
 
@@ -197,7 +197,7 @@ class ContactForces {
   }
 
   /// Solves for the forces in the current states and adds them to u, whose contact forces are 0. Returns a code. Rows
-  /// are evaluated unless all contacts are open.
+  /// are evaluated unless all contacts are open. choice: of forces that the motion does not determine.
   int solve(double t, const double* x, double* u, ForceChoice choice = ForceChoice::unique) {
     if (all_open()) {
       margins_.assign(set_.contacts.size(), 1.0);

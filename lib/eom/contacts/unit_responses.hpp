@@ -43,6 +43,7 @@ inline void push(double* u, const Pattern& pattern, double amount) {
   for (const auto& [input, share] : pattern.inputs) u[input] += share * amount;
 }
 
+/// The changes of the accelerations for unit forces, at one state after the other.
 class UnitResponses {
  public:
   using Index = Eigen::Index;
@@ -108,6 +109,7 @@ class UnitResponses {
     return amplitude_[3 * pattern.contact + static_cast<std::size_t>(pattern.component + 1)];
   }
 
+  /// Groups the patterns anew if they, or the equations, are others.
   void update(Groups& groups, double t, const double* x, double* u, const std::vector<Pattern>& patterns) {
     if (const std::size_t now = system_.equations(); now != equations_) {
       equations_ = now;

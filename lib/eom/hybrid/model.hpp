@@ -162,7 +162,8 @@ class Model {
     inputs(t);
     return u_.data();
   }
-  /// Solves for the forces of contacts at a state. They are then among inputs(t).
+  /// Solves for the forces of contacts at a state. They are then among inputs(t). choice: of forces that the motion
+  /// does not determine.
   int solve_contacts(double t, const double* x, contacts::ForceChoice choice = contacts::ForceChoice::unique) const {
     if (!forces_ || is_in_flight()) return 0;
     if (t == solved_t_ && choice <= solved_choice_ && std::equal(solved_x_.begin(), solved_x_.end(), x)) return 0;
