@@ -28,16 +28,43 @@ function(eomgen_unite target)
   endif()
 endfunction()
 
-# eomgen_stage(NAME [OWN_HEADERS] [UNOPTIMISED] SOURCES a.cpp ... NEEDS other_stage ... LINKS external::target ...)
-# One static library per stage. NEEDS is the dependency rule: a stage uses only the stages it names.
-# Headers are included as "stage/file.hpp" from generator/. OWN_HEADERS: no shared precompiled headers.
+# eomgen_headers(FOLDER [FILE ...]): the target eomgen_headers_FOLDER, which makes the headers of generator/FOLDER visible as
+# "FOLDER/file.hpp", and no others: a folder of its own has a link to it. With files: these of generator/, as "file.hpp".
+function(eomgen_headers folder)
+  if(TARGET eomgen_headers_${folder})
+    return()
+  endif()
+  set(root ${PROJECT_BINARY_DIR}/headers/${folder})
+  file(MAKE_DIRECTORY ${root})
+  foreach(name IN LISTS ARGN)
+    file(CREATE_LINK ${PROJECT_SOURCE_DIR}/generator/${name} ${root}/${name} SYMBOLIC)
+  endforeach()
+  if(NOT ARGN)
+    file(CREATE_LINK ${PROJECT_SOURCE_DIR}/generator/${folder} ${root}/${folder} SYMBOLIC)
+  endif()
+  add_library(eomgen_headers_${folder} INTERFACE)
+  target_include_directories(eomgen_headers_${folder} INTERFACE $<BUILD_INTERFACE:${root}>)
+endfunction()
+
+# eomgen_stage(NAME [OWN_HEADERS] [UNOPTIMISED] SOURCES a.cpp ... NEEDS other_stage ... READS folder ... LINKS external::target ...)
+# One static library per stage. NEEDS is the dependency rule: a stage sees the headers of its own folder, and of the stages
+# that it needs, directly or not. They must be declared before it, so there are no cycles. READS: folders whose headers are
+# data only, without the libraries behind them.
+# OWN_HEADERS: no shared precompiled headers.
 # UNOPTIMISED: not critical for run time, contains no integrator; lower optimisation saves a quarter of the compile time.
 function(eomgen_stage name)
-  cmake_parse_arguments(ARG "OWN_HEADERS;UNOPTIMISED" "" "SOURCES;NEEDS;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "OWN_HEADERS;UNOPTIMISED" "" "SOURCES;NEEDS;READS;LINKS" ${ARGN})
   add_library(eomgen_${name} STATIC ${ARG_SOURCES})
-  target_include_directories(eomgen_${name} PUBLIC ${PROJECT_SOURCE_DIR}/generator)
+  cmake_path(GET CMAKE_CURRENT_SOURCE_DIR FILENAME own)
+  foreach(folder IN ITEMS ${own} ${ARG_READS})
+    eomgen_headers(${folder})
+    target_link_libraries(eomgen_${name} PUBLIC eomgen_headers_${folder})
+  endforeach()
   target_link_libraries(eomgen_${name} PRIVATE eomgen_warnings)
   foreach(stage IN LISTS ARG_NEEDS)
+    if(NOT TARGET eomgen_${stage})
+      message(FATAL_ERROR "The stage ${name} needs ${stage}, which generator/CMakeLists.txt adds after it, or which does not exist")
+    endif()
     target_link_libraries(eomgen_${name} PUBLIC eomgen_${stage})
   endforeach()
   target_link_libraries(eomgen_${name} PUBLIC ${ARG_LINKS})

@@ -2,7 +2,7 @@
 // Kinds of forces as data: a kind is one file with a function that returns a Kind, and one line in registry.inc. A Kind
 // lists the keys of the force in a model file, and its effects as formulas in the model language. The model reader
 // checks the keys and expands the formulas (model/expand_forces.cpp), so that no later stage depends on a kind of
-// force. The oracle has its own statement of each kind, in terms of the keys that the author wrote (verify/forces/).
+// force. The oracle has its own statement of each kind, in terms of the keys that the author wrote (oracle/forces/).
 //
 // Names in the formulas: the keys. In addition: for `ends` a and b; for `bodies` fA and fB with their axes A1 A2 A3 and
 // B1 B2 B3 and their angular velocities wA and wB (for the ground E1 E2 E3 and 0); for `points` rA and rB; for `body`

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Gaussian elimination for any number type: binary64 for trials at many points, many digits for decisions, and exact
-// rationals. The oracle has its own (verify/linear_solve.hpp). symbolic/factorisation.hpp and program/elimination.hpp
+// rationals. The oracle has its own (oracle/linear_solve.hpp). symbolic/factorisation.hpp and program/elimination.hpp
 // eliminate expressions; their order of operations becomes code.
 #pragma once
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <map>
 
-#include "verify/applied_forces.hpp"
-#include "verify/frame_values.hpp"
-#include "verify/inertia_values.hpp"
+#include "oracle/applied_forces.hpp"
+#include "oracle/frame_values.hpp"
+#include "oracle/inertia_values.hpp"
 
 namespace eomgen::verify {
 namespace {

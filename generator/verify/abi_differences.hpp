@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "oracle/dalembert.hpp"
 #include "verify/central_differences.hpp"
 #include "verify/certificate.hpp"
-#include "verify/dalembert.hpp"
 
 namespace eomgen::verify {
 

@@ -9,8 +9,8 @@
 #include <eom/modes/contact_state.hpp>
 
 #include "derive/formulations.hpp"
+#include "oracle/state_sampler.hpp"
 #include "verify/comparisons.hpp"
-#include "verify/state_sampler.hpp"
 #include "verify/system_values.hpp"
 
 namespace eomgen::verify {

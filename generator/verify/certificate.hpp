@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "mechanics/mechanics.hpp"
+#include "oracle/jet.hpp"
 #include "system/equation_system.hpp"
-#include "verify/jet.hpp"
 #include "work.hpp"
 
 namespace eomgen::verify {

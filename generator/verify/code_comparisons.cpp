@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "lists.hpp"
+#include "oracle/applied_forces.hpp"
 #include "verify/abi_arguments.hpp"
-#include "verify/applied_forces.hpp"
 #include "verify/friction_law.hpp"
 #include "verify/function_comparisons.hpp"
 

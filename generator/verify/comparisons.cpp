@@ -9,11 +9,11 @@
 #include <cmath>
 #include <optional>
 
+#include "oracle/applied_forces.hpp"
+#include "oracle/motion.hpp"
 #include "symbolic/evaluate.hpp"
-#include "verify/applied_forces.hpp"
 #include "verify/code_comparisons.hpp"
 #include "verify/friction_law.hpp"
-#include "verify/motion.hpp"
 #include "verify/state_comparisons.hpp"
 #include "verify/system_values.hpp"
 

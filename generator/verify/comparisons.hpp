@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "oracle/dalembert.hpp"
 #include "verify/certificate.hpp"
-#include "verify/dalembert.hpp"
 
 namespace eomgen::verify {
 

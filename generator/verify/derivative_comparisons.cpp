@@ -10,9 +10,9 @@
 #include <string_view>
 #include <tuple>
 
+#include "oracle/applied_forces.hpp"
 #include "symbolic/evaluate.hpp"
 #include "verify/abi_arguments.hpp"
-#include "verify/applied_forces.hpp"
 #include "verify/central_differences.hpp"
 
 namespace eomgen::verify {

@@ -7,8 +7,8 @@
 
 #include <stdexcept>
 
+#include "oracle/linear_solve.hpp"
 #include "symbolic/evaluate.hpp"
-#include "verify/linear_solve.hpp"
 
 namespace eomgen::verify {
 namespace {

@@ -13,11 +13,11 @@
 #include <string_view>
 
 #include "lists.hpp"
+#include "oracle/applied_forces.hpp"
 #include "symbolic/evaluate.hpp"
 #include "system/contact_set.hpp"
 #include "verify/abi_arguments.hpp"
 #include "verify/abi_differences.hpp"
-#include "verify/applied_forces.hpp"
 #include "verify/central_differences.hpp"
 #include "verify/derivative_comparisons.hpp"
 

@@ -9,9 +9,9 @@
 #include <algorithm>
 
 #include "lists.hpp"
+#include "oracle/linear_solve.hpp"
+#include "oracle/motion.hpp"
 #include "symbolic/evaluate.hpp"
-#include "verify/linear_solve.hpp"
-#include "verify/motion.hpp"
 
 namespace eomgen::verify {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "mechanics/mechanics.hpp"
+#include "oracle/dalembert.hpp"
 #include "system/equation_system.hpp"
-#include "verify/dalembert.hpp"
 
 namespace eomgen::verify {
 

@@ -6,7 +6,7 @@
 #include <regex>
 #include <string>
 
-#include "architecture/stages.hpp"
+#include "architecture/sources.hpp"
 #include "support/folders.hpp"
 
 using namespace architecture;

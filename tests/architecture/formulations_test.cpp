@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "architecture/stages.hpp"
+#include "architecture/sources.hpp"
 #include "support/folders.hpp"
 
 using namespace architecture;

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "architecture/stages.hpp"
+#include "architecture/sources.hpp"
 #include "support/folders.hpp"
 
 namespace fs = std::filesystem;

@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-#include "architecture/stages.hpp"
+#include "architecture/sources.hpp"
 #include "support/folders.hpp"
 
 using namespace architecture;

@@ -8,7 +8,7 @@
 
 #include "forces/kind.hpp"
 #include "model/names.hpp"
-#include "verify/forces/force_law.hpp"
+#include "oracle/forces/force_law.hpp"
 
 using namespace eomgen;
 

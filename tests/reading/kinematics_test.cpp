@@ -6,9 +6,9 @@
 
 #include <algorithm>
 
+#include "oracle/interpreter.hpp"
 #include "reading/by_name.hpp"
 #include "symbolic/evaluate.hpp"
-#include "verify/interpreter.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The oracle against equations of motion derived by hand, at states with arbitrary accelerations and multipliers: the
 // residual is lhs - rhs and must agree as a number, not only vanish.
-#include "verify/dalembert.hpp"
+#include "oracle/dalembert.hpp"
 
 #include <cln/rational.h>
 #include <doctest/doctest.h>

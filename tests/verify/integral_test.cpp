@@ -6,8 +6,8 @@
 #include <string>
 
 #include "derive/imposition.hpp"
+#include "oracle/quadrature.hpp"
 #include "verify/certificate.hpp"
-#include "verify/quadrature.hpp"
 
 using namespace eomgen;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "verify/jet.hpp"
+#include "oracle/jet.hpp"
 
 #include <cln/rational.h>
 #include <doctest/doctest.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "verify/state_sampler.hpp"
+#include "oracle/state_sampler.hpp"
 
 #include <doctest/doctest.h>
 
-#include "verify/linear_solve.hpp"
-#include "verify/motion.hpp"
+#include "oracle/linear_solve.hpp"
+#include "oracle/motion.hpp"
 #include "verify/near.hpp"
 #include "verify/sample_models.hpp"
 
