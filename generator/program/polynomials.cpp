@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "symbolic/monomials.hpp"
 #include "symbolic/small_numbers.hpp"
 
 namespace eomgen::program {

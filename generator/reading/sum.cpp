@@ -3,6 +3,9 @@
 
 #include <cln/integer.h>
 
+#include "symbolic/monomials.hpp"
+#include "symbolic/small_numbers.hpp"
+
 namespace eomgen::reading {
 namespace {
 
@@ -23,10 +26,8 @@ template <class Key>
 void Sum::add_term(Key&& monomial, const Rational& coefficient) {
   if (cln::zerop(coefficient)) return;
   work::consume_budget(1);
-  auto [found, inserted] = terms_.try_emplace(std::forward<Key>(monomial), coefficient);
-  if (inserted) return;
-  found->second = found->second + coefficient;
-  if (cln::zerop(found->second)) terms_.erase(found);
+  symbolic::add_like_term(terms_, std::forward<Key>(monomial), coefficient, symbolic::plus,
+                          [](const Rational& value) { return symbolic::is_zero(value); });
 }
 void Sum::add(const Monomial& monomial, const Rational& coefficient) { add_term(monomial, coefficient); }
 void Sum::add(Monomial&& monomial, const Rational& coefficient) { add_term(std::move(monomial), coefficient); }
@@ -68,17 +69,10 @@ Sum operator*(const Rational& factor, const Sum& a) {
 
 namespace {
 
-/// Calls take(x, y) for each atom of two monomials, ascending, with its factors; null in the monomial that lacks it.
-/// Ends with false once `take` returns false.
 template <class Take>
 bool merge(const Monomial& a, const Monomial& b, const Take& take) {
-  auto i = a.begin(), j = b.begin();
-  while (i != a.end() || j != b.end()) {
-    const int c = i == a.end() ? 1 : j == b.end() ? -1 : compare(*i->atom, *j->atom);
-    const Factor *const x = c <= 0 ? &*i++ : nullptr, *const y = c >= 0 ? &*j++ : nullptr;
-    if (!take(x, y)) return false;
-  }
-  return true;
+  return symbolic::merge_powers(
+      a, b, [](const Factor& x, const Factor& y) { return compare(*x.atom, *y.atom); }, take);
 }
 
 /// The product of factors with the same atom; one of them may be null.

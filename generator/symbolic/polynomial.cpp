@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 
+#include "symbolic/monomials.hpp"
 #include "symbolic/small_numbers.hpp"
 #include "work.hpp"
 
@@ -15,10 +16,7 @@ namespace {
 constexpr long highest_expanded_power = 8;
 
 void add_term(Polynomial& p, const Monomial& m, const Rational& coefficient) {
-  const auto [place, inserted] = p.try_emplace(m, coefficient);
-  if (inserted) return;
-  place->second = plus(place->second, coefficient);
-  if (is_zero(place->second)) p.erase(place);
+  add_like_term(p, m, coefficient, plus, [](const Rational& value) { return is_zero(value); });
 }
 
 Monomial product_of(const Monomial& a, const Monomial& b) { return product_of_powers<&Power::atom>(a, b); }

@@ -117,34 +117,4 @@ class SmallVector {
   std::uint32_t size_ = 0, capacity_ = inside;
 };
 
-/// a b^power_of_b for lists of powers, which are ascending by `base`, with each base once and no exponent 0.
-template <auto base, class Powers>
-Powers product_of_powers(const Powers& a, const Powers& b, std::int32_t power_of_b = 1) {
-  Powers result;
-  result.reserve(a.size() + b.size());
-  auto i = a.begin(), j = b.begin();
-  const auto end_i = a.end(), end_j = b.end();
-  while (i != end_i && j != end_j) {
-    auto factor = *i;
-    if (factor.*base < (*j).*base) {
-      ++i;
-    } else if ((*j).*base < factor.*base) {
-      factor = *j++;
-      factor.exponent *= power_of_b;
-    } else {
-      factor.exponent += j->exponent * power_of_b;
-      ++i, ++j;
-      if (factor.exponent == 0) continue;
-    }
-    result.push_back_unchecked(factor);
-  }
-  for (; i != end_i; ++i) result.push_back_unchecked(*i);
-  for (; j != end_j; ++j) {
-    auto factor = *j;
-    factor.exponent *= power_of_b;
-    result.push_back_unchecked(factor);
-  }
-  return result;
-}
-
 }  // namespace eomgen::symbolic

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "symbolic/monomials.hpp"
 #include "symbolic/small_numbers.hpp"
 
 using namespace eomgen::symbolic;
