@@ -62,8 +62,10 @@ Json json_of(const run::Sensitivities& found, const std::vector<std::string>& st
 }
 
 std::string text_of(const run::Gradients& found) {
-  std::string out = fmt::format("\ngradients         at t = {}, by the adjoint equations with {}: {}\n", found.t,
-                                found.solver, eom::name(found.outcome));
+  const bool adjoint = found.method == run::GradientMethod::adjoint;
+  std::string out = fmt::format("\ngradients         at t = {}, by the {} equations with {}: {}\n", found.t,
+                                adjoint ? "adjoint" : "variational", found.solver, eom::name(found.outcome));
+  if (!adjoint) out += fmt::format("  no adjoint equations: {}\n", found.reason);
   for (const run::Gradient& g : found.list) {
     for (std::size_t d = 0; d < found.directions.size(); ++d)
       out += derivative_line(g.of, found.directions[d], g.by[d], g.error, g.error.empty() ? 0 : g.error[d]);
@@ -71,8 +73,9 @@ std::string text_of(const run::Gradients& found) {
   return out + note_line(found.estimate_note);
 }
 
-/// {"method", "t", "outcome", "outputs": {output: value}, "values": {output: {of: derivative}}, "error_estimate": as
-/// values or null, "rhs_evaluations", "adjoint_evaluations", "seconds"}
+/// {"equations", "reason": of variational ones or null, "method", "t", "outcome", "outputs": {output: value}, "values":
+/// {output: {of: derivative}}, "error_estimate": as values or null, "rhs_evaluations", "adjoint_evaluations",
+/// "seconds"}
 Json json_of(const run::Gradients& found) {
   Json outputs = Json::object(), values = Json::object(), errors = Json::object();
   for (const run::Gradient& g : found.list) {
@@ -81,7 +84,10 @@ Json json_of(const run::Gradients& found) {
     add_values(values[g.of], found.directions, g.by);
     if (!g.error.empty()) add_values(errors[g.of], found.directions, g.error);
   }
-  return {{"method", found.solver},
+  const bool adjoint = found.method == run::GradientMethod::adjoint;
+  return {{"equations", adjoint ? "adjoint" : "variational"},
+          {"reason", adjoint ? Json(nullptr) : Json(found.reason)},
+          {"method", found.solver},
           {"t", found.t},
           {"outcome", eom::name(found.outcome)},
           {"outputs", outputs},

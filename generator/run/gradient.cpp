@@ -9,11 +9,13 @@
 #include <eom/error_estimate.hpp>
 #include <eom/events/integrate.hpp>
 #include <eom/ode.hpp>
+#include <optional>
 #include <variant>
 
 #include "run/central_differences.hpp"
 #include "run/derivative_run.hpp"
 #include "run/directional_derivative.hpp"
+#include "run/forward_gradient.hpp"
 #include "run/lost_rank.hpp"
 #include "run/methods.hpp"
 #include "run/trajectory.hpp"
@@ -377,22 +379,37 @@ void require_outputs(const RunRequest& request, const std::vector<std::string>& 
 
 Gradients integrate_gradients(const RunRequest& request, const RunResult& motion, const GradientRequest& wanted) {
   require_derivatives(request, motion);
-  if (!request.code.contact_set.empty())
-    refuse_derivative(
-        "forces of contacts are solved for at every evaluation: --sensitivity has derivatives of such runs");
   require_outputs(request, wanted.outputs);
   Gradients result;
   result.solver = derivative_solver(motion.solver);
   result.t = motion.t;
   for (const Direction& d : wanted.directions) result.directions.push_back(d.name);
   const eom::Options options = derivative_options(request, result.solver);
-  GradientRun run(request, motion, result.solver, wanted);
+  std::optional<GradientRun> backward;
+  std::optional<ForwardGradientRun> forward;
+  const auto run = [&](const eom::Options& given) { return backward ? (*backward)(given) : (*forward)(given); };
+  const auto go_forward = [&](const std::string& reason) {
+    backward.reset();
+    forward.emplace(request, motion, result.solver, wanted.directions, wanted.outputs);
+    result.method = GradientMethod::variational;
+    result.reason = reason;
+  };
+  if (request.code.contact_set.empty())
+    backward.emplace(request, motion, result.solver, wanted);
+  else
+    go_forward("contact forces are solved for at every evaluation");
   const auto start = std::chrono::steady_clock::now();
-  const eom::Result end = run(options);
+  eom::Result end;
+  try {
+    end = run(options);
+  } catch (const NoAdjointEquations& none) {
+    go_forward(none.reason);
+    end = run(options);
+  }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.outcome = end.outcome;
   result.statistics = end.statistics;
-  result.adjoint_evaluations = run.adjoint_evaluations();
+  if (backward) result.adjoint_evaluations = backward->adjoint_evaluations();
   if (end.outcome != eom::Outcome::done) {
     require_bounded(request, motion, end.outcome, motion.t);
     return result;
@@ -406,8 +423,8 @@ Gradients integrate_gradients(const RunRequest& request, const RunResult& motion
     result.list.push_back({wanted.outputs[k], end.x[n + k * (count + 1)], gradient_of(end.x, k), {}});
   const EndComparison comparison(request, motion, end.x);
   if (!wanted.estimate && comparison.agrees({})) return result;
-  const eom::ErrorEstimate error = eom::estimate_error(get_method(result.solver).order, request.scene.t0, end, options,
-                                                       [&run](const eom::Options& tighter) { return run(tighter); });
+  const eom::ErrorEstimate error =
+      eom::estimate_error(get_method(result.solver).order, request.scene.t0, end, options, run);
   comparison.require(error.x);
   if (!wanted.estimate) return result;
   for (std::size_t k = 0; k < wanted.outputs.size(); ++k) result.list[k].error = gradient_of(error.x, k);

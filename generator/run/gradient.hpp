@@ -9,7 +9,9 @@
 //
 // A and b are the formulas of variational.hpp for unit vectors s and for s = 0 (Cao, Li, Petzold, Serban, Adjoint
 // sensitivity analysis for differential-algebraic equations, SIAM J. Sci. Comput. 24, 2003). The adjoint equations are
-// integrated along the dense output of the run, from checkpoints where it is long (trajectory.hpp).
+// integrated along the dense output of the run, from checkpoints where it is long (trajectory.hpp). Runs without
+// adjoint equations take the variational ones (forward_gradient.hpp): contact forces are solved for at every
+// evaluation, or a contact changes while another one is closed, whose constraint the unit vectors s violate.
 #pragma once
 
 #include <cstddef>
@@ -32,7 +34,12 @@ struct Gradient {
   std::vector<double> error;  // estimates; empty if not requested
 };
 
+/// The equations that were integrated.
+enum class GradientMethod { adjoint, variational };
+
 struct Gradients {
+  GradientMethod method = GradientMethod::adjoint;
+  std::string reason;  // why not the adjoint ones; else empty
   std::string solver;
   eom::Outcome outcome = eom::Outcome::done;
   double t = 0;
@@ -48,7 +55,7 @@ struct Gradients {
 struct GradientRequest {
   const std::vector<Direction>& directions;
   const std::vector<std::string>& outputs;  // of the code, or states
-  AdjointFunction adjoint;
+  AdjointFunction adjoint;                  // not used by the variational equations
   bool estimate = true;
 };
 

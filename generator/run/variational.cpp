@@ -54,6 +54,8 @@ class VariationalRun::Run {
     return total;
   }
 
+  VariationalJumps& jumps() { return jumps_; }
+
   // The right-hand side of x and s. dx may alias x: x is read before dx is written.
   int operator()(double t, const double* x, double* dx) {
     auto& context = jumps_.equations().context;
@@ -179,5 +181,6 @@ VariationalRun::VariationalRun(const RunRequest& request, const RunResult& motio
 VariationalRun::~VariationalRun() = default;
 
 eom::Result VariationalRun::operator()(const eom::Options& options) { return run_->run(options); }
+VariationalJumps& VariationalRun::jumps() { return run_->jumps(); }
 
 }  // namespace eomgen::run

@@ -21,6 +21,8 @@
 
 namespace eomgen::run {
 
+class VariationalJumps;
+
 class VariationalRun {
  public:
   /// All arguments have to outlive it. motion: the run, which ended at motion.t.
@@ -33,6 +35,9 @@ class VariationalRun {
   /// The end of x, then s of each direction, then the change of the time of the end, all times the scale of the
   /// direction. May be called again. Throws Error{stage "run"} if an interruption does not follow smoothly.
   eom::Result operator()(const eom::Options& options);
+
+  /// The equations, after a run in the mode of its end.
+  VariationalJumps& jumps();
 
  private:
   class Run;

@@ -128,8 +128,7 @@ bool VariationalJumps::change_contact(const eom::EventPoint& point) {
   if (!same && !bounces.empty()) refuse_derivative(accumulation(bounces, t));
   // Changes of a state alone violate the constraints of contacts, and are small enough for their modes only below the
   // rounding of gaps.
-  if (!same && has_unit_vectors())
-    refuse_derivative(fmt::format("beside the motion, a contact changes to another mode at t = {}", t));
+  if (!same && has_unit_vectors()) throw NoAdjointEquations{fmt::format("a contact changes at t = {}", t)};
   std::copy(after.begin(), after.end() - 1, point.x.begin());
   point.t = after[n_];
   restore_contacts(own_, *next);

@@ -23,6 +23,11 @@ namespace eomgen::run {
 /// with their changes at fixed t, so that no jump lies between a time of the run and the same time beside it.
 enum class NeighbourInputs { of_scene, of_same_times };
 
+/// Thrown where changes of one state alone cannot cross an interruption, which the directions of a run may.
+struct NoAdjointEquations {
+  std::string reason;
+};
+
 class VariationalJumps {
  public:
   /// All arguments have to outlive it. A direction without scenes beside it changes the state alone.

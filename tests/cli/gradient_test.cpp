@@ -237,8 +237,89 @@ TEST_CASE("gradient: refusals name the cause") {
   CHECK(contains(expect(2, folder, {"run", "model.toml", "--by", "k"}).err, "--gradient"));
   CHECK(contains(expect(2, folder, {"run", "model.toml", "--gradient", "nothing"}).err, "nothing"));
   CHECK(contains(expect(2, folder, {"run", "model.toml", "--gradient", "x", "--by", "nothing"}).err, "nothing"));
-  CHECK(contains(expect(2, folder, {"run", "tethered_satellites", "--gradient", "x", "--by", "m_A"}).err,
-                 "forces of contacts are solved for"));
+}
+
+// A puck that falls with a speed v along a rough floor, and slides on after the impact: z_1 = 0 at T = sqrt(2 h/g), and
+// Moreau's law takes mu (1 + e) g T of the slip.
+TEST_CASE("gradient: through an impact with friction whose impulse is solved for, by the variational equations") {
+  const Folder folder;
+  folder.write("model.toml", R"toml(format = 1
+[parameters]
+m = 2
+g = 9.81
+h = 0.3
+v = 3
+e = 0.6
+mu = 0.2
+[[particle]]
+name = "P"
+mass = "m"
+position = { cartesian = ["x", "0", "z"] }
+[[constraint]]
+name = "floor"
+holonomic = "z"
+holds = "unilateral"
+restitution = "e"
+friction = { static = "mu", dynamic = "mu" }
+[impacts]
+law = "moreau"
+[[force]]
+gravity = "-g*E3"
+[scene.default]
+t = [0, 0.5]
+initial = { x = 0, x_dot = "v", z = "h", z_dot = 0 }
+rtol = 1e-11
+atol = 1e-12
+)toml");
+  const Json found = gradients(folder, {"run", "model.toml", "--gradient", "x,z,x_dot,energy", "--by", "h,v,e,mu,m"});
+  CHECK(found["equations"] == "variational");
+  CHECK(found["adjoint_evaluations"] == 0);
+  const double m = 2, g = 9.81, h = 0.3, v = 3, e = 0.6, mu = 0.2, T = std::sqrt(2 * h / g), rest = 0.5 - T,
+               slip = v - mu * (1 + e) * g * T, by_T = 1 / (g * T);  // dT/dh
+  for (const auto& [of, by, exact] : std::vector<std::tuple<const char*, const char*, double>>{
+           {"x", "v", 0.5},
+           {"x", "mu", -(1 + e) * g * T * rest},
+           {"x", "e", -mu * g * T * rest},
+           {"x", "h", by_T * (v - slip - mu * (1 + e) * g * rest)},
+           {"z", "e", g * T * rest},
+           {"z", "h", by_T * (e * g * rest - e * g * T + g * rest)},
+           {"z", "mu", 0},
+           {"x_dot", "mu", -(1 + e) * g * T},
+           {"x_dot", "m", 0},
+           {"energy", "m", slip * slip / 2 + e * e * g * h},
+           {"energy", "v", m * slip},
+           {"energy", "h", m * (-slip * mu * (1 + e) * g * by_T + e * e * g)}}) {
+    CAPTURE(of);
+    CAPTURE(by);
+    const double error = std::abs(found["values"][of][by].get<double>() - exact);
+    CHECK(error < 1e-7 * (1 + std::abs(exact)));  // derivatives across the impact are differences
+    CHECK(error <= found["error_estimate"][of][by].get<double>() + 1e-8);
+  }
+  // In lasting contact, its force is an output.
+  const Json rests = gradients(folder, {"run", "model.toml", "--set", "h=0", "--set", "v=5", "--gradient",
+                                        "reaction.floor,x", "--by", "m,g,mu"})["values"];
+  CHECK(rests["reaction.floor"]["m"].get<double>() == doctest::Approx(g).epsilon(1e-9));
+  CHECK(rests["reaction.floor"]["g"].get<double>() == doctest::Approx(m).epsilon(1e-9));
+  CHECK(rests["x"]["mu"].get<double>() == doctest::Approx(-g * 0.125).epsilon(1e-8));
+}
+
+// A puck slides along a rough table against a wall: of changes of its state alone, those along the table's normal
+// violate the table.
+TEST_CASE("gradient: through a contact that changes while another one is closed") {
+  const Folder folder;
+  folder.write(
+      "model.toml",
+      "format = 1\n[parameters]\nm = 2\ng = 9.81\nd = 1\nv = 3\ne = 0.5\nmu = 0.2\n[[particle]]\nname = "
+      "\"P\"\nmass = \"m\"\nposition = { cartesian = [\"x\", \"0\", \"z\"] }\n[[constraint]]\nname = \"table\"\n"
+      "holonomic = \"z\"\nfriction = { static = \"mu\", dynamic = \"mu\" }\n[[constraint]]\nname = \"wall\"\n"
+      "holonomic = \"d - x\"\nholds = \"unilateral\"\nrestitution = \"e\"\n[[force]]\ngravity = \"-g*E3\"\n"
+      "[scene.default]\nt = [0, 0.6]\ninitial = { x = 0, x_dot = \"v\" }\nrtol = 1e-11\natol = 1e-12\n");
+  compare(folder, "model.toml", "x,x_dot", "d,v,e,mu,g", 1e-8);
+  const double mu = 0.2, g = 9.81, v = 3, d = 1, e = 0.5, a = mu * g, w = std::sqrt(v * v - 2 * a * d);
+  const Json by = gradients(folder, {"run", "model.toml", "--gradient", "x_dot", "--by", "e,d"})["values"]["x_dot"];
+  // x_dot = -e w + a (t - T) with T = (v - w)/a
+  CHECK(by["e"].get<double>() == doctest::Approx(-w).epsilon(1e-8));
+  CHECK(by["d"].get<double>() == doctest::Approx((e - 1) * a / w).epsilon(1e-7));
 }
 
 TEST_CASE("gradient: quadratic drag from rest, where the speed has no slope") {
