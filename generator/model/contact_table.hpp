@@ -52,6 +52,9 @@ class ContactTable {
   const std::vector<Value>& list(const Value& value, const std::string& what) const;
   Value& begin(const Value& at, const std::string& suffix);
   void particles(const Value& value);
+  /// The gap of a ball about a particle, by the name of the particle. `radius`: where its size is written, or null.
+  std::function<std::string(const std::string&)> gap_of_particle(const Value& on, const Value* radius,
+                                                                 const std::string& size) const;
   void spheres(const Value& value);
   void capsules(const Value& value);
   void shapes(const Value& value);
@@ -96,6 +99,7 @@ class ContactTable {
   void stop_below(const Value& at, const std::string& name, const std::vector<std::string>& heights,
                   const std::string& limit);
   void foot_of(const Value& at, const std::string& name, const std::string& f);
+  void stop_beside(const Value& at, const std::string& name, const Core& ball, const std::string& f);
   void ball_on_surface(const Value& at, const std::string& suffix, const Core& ball, const std::string& f);
   void capsule_on_surface(const Value& at, const Core& capsule, const std::string& f);
   void rim(const Value& at, const Core& disk, const Approach& approach, const std::vector<Value>& at_rest);

@@ -116,21 +116,47 @@ Value& ContactTable::begin(const Value& at, const std::string& suffix) {
 void ContactTable::particles(const Value& value) {
   const std::vector<Value>& names = list(value, "the particles");
   if (names.empty()) fail(value, "has no particles", "write particles = [\"P\", ..]");
-  const Value& on = require("on", "add on = { sphere = \"R\", centre = \"..\" }, or another obstacle");
-  const Obstacle& kind = kind_of(on, obstacles(), "obstacle");
-  const std::vector<std::string> values = values_of(on, kind);
+  const Value& on = require("on", "add on = \"ground\", a plane { point, normal }, or an obstacle");
   const Value* radius = table_.find("radius");
-  if (radius != nullptr && kind.nearest == nullptr)
-    fail(*radius, "gives a radius, and a ball touches a surface beside the point below it", "remove radius");
   const std::string size = radius == nullptr ? "0" : expression(*radius, "the radius");
-  Names inlined{true};
+  const std::function<std::string(const std::string&)> gap = gap_of_particle(on, radius, size);
   for (const Value& name : names) {
     require_text(name, "a particle");
-    const Core core{Core::Kind::point, name.text, size, "", ""};
-    const std::string gap =
-        kind.nearest == nullptr ? height_above(values[0], name.text) : kind.nearest(core, values, inlined)[0].gap;
-    begin(name, name.text).entries.push_back({"holonomic", value.span, text_value(name, gap)});
+    begin(name, name.text).entries.push_back({"holonomic", value.span, text_value(name, gap(name.text))});
   }
+}
+
+std::function<std::string(const std::string&)> ContactTable::gap_of_particle(const Value& on, const Value* radius,
+                                                                             const std::string& size) const {
+  if (on.is(Value::Kind::text)) {
+    if (on.text != "ground")
+      fail(on, fmt::format("puts particles on {}", quote(on.text)),
+           "write on = \"ground\", a plane or an obstacle; pairs are spheres = [..] or shapes = { .. }");
+    return [size](const std::string& name) { return fmt::format("dot({}, E3) - {}", name, size); };
+  }
+  if (on.is(Value::Kind::table) && on.find("normal") != nullptr) {
+    const Value* point = on.find("point");
+    if (point == nullptr) fail(on, "has a plane without a point", "add point = \"..\", a point of the plane");
+    for (const Entry& entry : on.entries) {
+      if (entry.key != "point" && entry.key != "normal")
+        source_.fail(entry.span, fmt::format("a plane under particles has no key {}", quote(entry.key)),
+                     "its keys are point, normal; a plane that moves along itself needs a [[body]] with points");
+    }
+    return [size, normal = normal_of(on), at = expression(*point, "the point")](const std::string& name) {
+      return fmt::format("dot({} - {}, {}) - {}", name, at, normal, size);
+    };
+  }
+  const Obstacle& kind = kind_of(on, obstacles(), "plane or obstacle");
+  const std::vector<std::string> values = values_of(on, kind);
+  if (kind.nearest == nullptr) {
+    if (radius != nullptr)
+      fail(*radius, "gives a radius, and a ball touches a surface beside the point below it", "remove radius");
+    return [f = values[0]](const std::string& name) { return height_above(f, name); };
+  }
+  return [&kind, values, size](const std::string& name) {
+    Names inlined{true};
+    return kind.nearest({Core::Kind::point, name, size, "", ""}, values, inlined)[0].gap;
+  };
 }
 
 void ContactTable::spheres(const Value& value) {

@@ -80,26 +80,32 @@ TEST_CASE("shapes: a capsule on a slope touches at the distance along the normal
            "c_2", (R + L / 2 * along) / std::cos(a));
 }
 
-TEST_CASE("shapes: particles meet spheres, shells, cylinders, cones and surfaces where these are") {
+TEST_CASE("shapes: particles meet planes, spheres, shells, cylinders, cones and surfaces where these are") {
   const Folder folder;
   const auto particle = [](const std::string& on, const std::string& more) {
     return "format = 1\n[parameters]\nm = 1\ng = 9.81\nS = 0.7\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { "
            "cartesian = [\"x\", \"y\", \"z\"] }\n[[force]]\ngravity = \"-g*E3\"\n[[contact]]\nname = \"c\"\nparticles "
            "= "
-           "[\"P\"]\non = { " +
-           on + " }\nrestitution = 0.5\n" + more +
+           "[\"P\"]\non = " +
+           on + "\nrestitution = 0.5\n" + more +
            "[scene.default]\nt = [0, 0.8]\ninitial = { x = 0.2, y = 0.1, z = 2 }\nrtol = 1e-11\natol = 1e-12\n";
   };
   const double x = 0.2, y = 0.1, S = 0.7, r = 0.05;
-  falls_to(folder, particle("sphere = \"S\", centre = \"0.3*E3\"", "radius = 0.05\n"), "c_P",
+  falls_to(folder, particle("{ sphere = \"S\", centre = \"0.3*E3\" }", "radius = 0.05\n"), "c_P",
            0.3 + std::sqrt((S + r) * (S + r) - x * x - y * y));
-  falls_to(folder, particle("hollow = 3, centre = \"2*E3\"", "radius = 0.05\n"), "c_P",
+  falls_to(folder, particle("{ hollow = 3, centre = \"2*E3\" }", "radius = 0.05\n"), "c_P",
            2 - std::sqrt((3 - r) * (3 - r) - x * x - y * y));
-  falls_to(folder, particle("cylinder = \"S\", point = \"0.1*E2\", axis = \"2*E1\"", "radius = 0.05\n"), "c_P", S + r);
-  falls_to(folder, particle("cone = \"0.5\", apex = \"E3\", axis = \"-E3\"", ""), "c_P",
+  falls_to(folder, particle("{ cylinder = \"S\", point = \"0.1*E2\", axis = \"2*E1\" }", "radius = 0.05\n"), "c_P",
+           S + r);
+  falls_to(folder, particle("\"ground\"", "radius = 0.05\n"), "c_P", r);
+  falls_to(folder,
+           particle("{ point = \"0.4*E3\", normal = \"E3 - 0.5*E1\" }",
+                    "radius = 0.05\nfriction = { static = 0.3, dynamic = 0.3 }\n"),
+           "c_P", 0.4 + 0.5 * x + r * std::hypot(1, 0.5));
+  falls_to(folder, particle("{ cone = \"0.5\", apex = \"E3\", axis = \"-E3\" }", ""), "c_P",
            1 - std::hypot(x, y) / std::tan(0.5));
-  falls_to(folder, particle("surface = \"0.3*sin(2*x) + y^2\"", "friction = { static = 0.3, dynamic = 0.3 }\n"), "c_P",
-           0.3 * std::sin(2 * x) + y * y);
+  falls_to(folder, particle("{ surface = \"0.3*sin(2*x) + y^2\" }", "friction = { static = 0.3, dynamic = 0.3 }\n"),
+           "c_P", 0.3 * std::sin(2 * x) + y * y);
 }
 
 TEST_CASE("shapes: a ball leaves a sphere at two thirds of the height of its centre") {

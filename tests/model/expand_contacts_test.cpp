@@ -126,5 +126,9 @@ TEST_CASE("contact tables: errors say what is wrong and where") {
         std::string::npos);
   CHECK(error_of("[[contact]]\nname = \"c\"\nspheres = [\"box\"]\nradius = 1\n").find("needs two spheres") !=
         std::string::npos);
+  CHECK(error_of("[[contact]]\nname = \"c\"\nparticles = [\"P\"]\non = \"box\"\n").find("puts particles on 'box'") !=
+        std::string::npos);
+  CHECK(error_of("[[contact]]\nname = \"c\"\nparticles = [\"P\"]\non = { normal = \"E3\" }\n")
+            .find("a plane without a point") != std::string::npos);
   CHECK(error_of("[contact]\nname = \"c\"\n").find("[[contact]] with two brackets") != std::string::npos);
 }
