@@ -88,12 +88,26 @@ void ContactTable::foot_of(const Value& at, const std::string& name, const std::
   points_.push_back(std::move(point));
 }
 
+// Points of the ball at two angles from its lowest point: a second contact, where the surface is narrower than the
+// ball.
+void ContactTable::stop_beside(const Value& at, const std::string& name, const Core& ball, const std::string& f) {
+  std::vector<std::string> heights;
+  for (const char* angle : {"pi/7", "pi/3"}) {
+    for (int k = 0; k < 8; ++k)
+      heights.push_back(height_above(f, fmt::format("({0} + {1}*(sin({2})*(cos({3}*pi/4)*E1 + sin({3}*pi/4)*E2) - "
+                                                    "cos({2})*E3))",
+                                                    ball.centre, ball.radius, angle, k)));
+  }
+  stop_below(at, name, heights, fmt::format("(-0.02*{})", ball.radius));
+}
+
 // The ball is R N above its foot S in the plane of E1 and E2; the gap is along N where that holds, as B - S = R N + g
 // E3.
 void ContactTable::ball_on_surface(const Value& at, const std::string& suffix, const Core& ball, const std::string& f) {
   const std::string name = name_ + "_" + suffix;
   const Foot foot(f, name);
   foot_of(at, name, f);
+  stop_beside(at, name + "_beside", ball, f);
   const auto beside = [&](const char* axis) {
     return fmt::format("dot({0} - {1} - {2}*{3}, {4})", ball.centre, foot.position(), ball.radius, foot.normal(), axis);
   };

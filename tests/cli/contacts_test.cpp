@@ -126,6 +126,24 @@ TEST_CASE("shapes: a ball leaves a sphere at two thirds of the height of its cen
   CHECK(std::abs(left - low) < 1e-6);  // it starts 5e-7 below the top
 }
 
+// A valley z = |x| with a rounded edge is narrower than the ball, which rolls down one side until it meets the other.
+TEST_CASE("shapes: a ball that touches a surface at a second place ends the run there") {
+  const Folder folder;
+  const auto valley = [&](double edge) {
+    folder.write(
+        "model.toml",
+        "format = 1\n[parameters]\nm = 1\nR = 0.2\ne = " + std::to_string(edge) +
+            "\n[[body]]\nname = \"B\"\nmass = \"m\"\ninertia = \"0.4*m*R^2\"\nposition = { cartesian = [\"x\", \"0\", "
+            "\"z\"] }\nrotation = { axis = \"E2\", angle = \"q\" }\n[[force]]\ngravity = \"-9.81*E3\"\n[[contact]]\n"
+            "name = \"c\"\nbody = \"B\"\nshape = { sphere = \"R\" }\non = { surface = \"sqrt(x^2 + e^2)\" }\n"
+            "[scene.default]\nt = [0, 1]\ninitial = { x = 0.5, z = 1.1, z_dot = 0, x_dot = 0, q = 0 }\n");
+    return expect(0, folder, {"run", "model.toml"}).out;
+  };
+  const std::string narrow = valley(0.02), wide = valley(0.5);
+  CHECK(contains(narrow, "c_1_beside"));
+  CHECK_FALSE(contains(wide, "c_1_beside"));
+}
+
 TEST_CASE("shapes: unknown kinds, wrong sizes and missing keys are refused with a remedy") {
   refused(falling("torus = \"R\""), "names no shape");
   refused(falling("capsule = \"R\""), "gives the sizes of the capsule as");
