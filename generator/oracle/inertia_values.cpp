@@ -155,7 +155,7 @@ Momentum momentum(const Oracle& oracle, const State& state) {
       sum[c] = sum[c] + angular[c];
       sum[3 + c] = sum[3 + c] + linear[c];
       scale[c] = scale[c] + cln::abs(angular[c]) + angular_size;
-      scale[3 + c] = scale[3 + c] + cln::abs(linear[c]);
+      scale[3 + c] = scale[3 + c] + largest_of(linear);  // a component of a turned axis may be 0 but for rounding
     }
   };
   for (const Moving& one : all) {

@@ -153,31 +153,41 @@ class FrameComparison {
     const auto body = std::find_if(model_.bodies.begin(), model_.bodies.end(), is_here);
     if (body != model_.bodies.end()) return body->frame;
     if (std::any_of(model_.particles.begin(), model_.particles.end(), is_here)) return 0;
+    // Bodies with the same axes (one slides along the other) differ by what is fixed in them.
+    const Real same = cln::cl_RA(1) / 100000000;
+    const Real least = axes_difference(place, 0);
     const model::Body* carrier = nullptr;
-    Real least = axes_difference(place, 0);
+    Real nearest = least, least_motion = 0;
     for (const model::Body& one : model_.bodies) {
       const Real difference = axes_difference(place, one.frame);
       if (difference >= least) continue;
-      least = difference;
+      const Real motion = motion_within(place, one);
+      const bool alike = cln::abs(difference - nearest) <= same;
+      if (carrier != nullptr && (alike ? motion >= least_motion : difference > nearest)) continue;
+      nearest = difference, least_motion = motion;
       carrier = &one;
     }
     if (carrier == nullptr) return 0;
-    require_fixed(place, *carrier);
+    result_[jacobians].largest = std::max(result_[jacobians].largest, cln::double_approx(least_motion));
     return carrier->frame;
   }
 
-  /// dr/dq_i - dr_B/dq_i = w_i x (r - r_B)
-  void require_fixed(std::uint32_t p, const model::Body& body) {
+  /// How far dr/dq_i - dr_B/dq_i is from w_i x (r - r_B), relative to the sizes of their terms: 0 for a point that is
+  /// fixed in the body.
+  Real motion_within(std::uint32_t p, const model::Body& body) {
     const PlaceMotion &point = place(p), &centre = place(body.place);
     Components arm;
     for (std::size_t c = 0; c < 3; ++c) arm[c] = point.position[c] - centre.position[c];
+    Real largest = 0;
     for (const std::uint32_t i : free_) {
       const Components& turn = axes(body.frame).rotation[i];
       const Components expected = cross_product(turn, arm);
       const Real size = linear_.tangent[i] + angular_.tangent[i] * linear_.value;
       for (std::size_t c = 0; c < 3; ++c)
-        note(jacobians, point.tangent[i][c] - centre.tangent[i][c] - expected[c], size);
+        largest = cln::max(largest,
+                           Real(relative_difference(point.tangent[i][c] - centre.tangent[i][c] - expected[c], size)));
     }
+    return largest;
   }
 
   void compare(std::uint32_t p) {

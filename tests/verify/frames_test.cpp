@@ -142,7 +142,11 @@ TEST_CASE("frames: arms, driven bodies, quaternions, a rolling disk and particle
       "[functions]\nd = \"L*sin(w*t)\"\n[[particle]]\nname = \"cart\"\nmass = \"m\"\nposition = { cartesian = [\"x\", "
       "\"y\"] }\n[[constraint]]\nname = \"drive\"\nholonomic = \"x - d\"\n" +
       link("bob", "\"cart + b*bob.e1\"", "{ axis = \"E3\", angle = \"alpha\" }") + scene;
-  for (const std::string& text : {arm(4), driven, four, charts, prescribed, disk}) check_frames(text);
+  // Two bodies with the same axes: the point is fixed in one of them.
+  const std::string slide = frame_numbers + link("rail", "\"0*E1\"", "{ axis = \"E3\", angle = \"q\" }") +
+                            link("slide", "\"s*rail.e1\"", "{ fixed = true }", "rail") +
+                            point("hook", "slide + b*slide.e2") + "[coordinates]\ns = \"m\"\n" + scene;
+  for (const std::string& text : {arm(4), driven, four, charts, prescribed, disk, slide}) check_frames(text);
 }
 
 TEST_CASE("frames: a planar pendulum has the Jacobian and the bias of the textbook") {

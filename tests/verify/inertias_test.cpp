@@ -120,9 +120,12 @@ TEST_CASE("inertias: regressors and momenta of arms, driven bodies, quaternions 
                                  solid("bob", "\"cart + b*bob.e1\"", "{ axis = \"E3\", angle = \"alpha\" }");
   const std::string two = particle("P", "{ spherical = [\"R\", \"phi\", \"theta\"] }") +
                           particle("Q", "{ cylindrical = [\"r\", \"psi\", \"z\"], from = \"P\" }");
+  // A rail along E2 by a quarter turn, whose cosine is 0 but for rounding in the oracle.
+  const std::string rail = "[[frame]]\nname = \"F\"\nrotation = { axis = \"E3\", angle = \"pi/2\" }\n" +
+                           particle("P", "\"x*F.e1\"") + "[coordinates]\nx = \"m\"\n";
   for (const std::string& text :
        {head + rod + second + gravity + scene, head + driven + scene, head + four + gravity + scene,
-        head + prescribed + gravity + scene, head + two + scene, rolling_disk}) {
+        head + prescribed + gravity + scene, head + two + scene, head + rail + gravity + scene, rolling_disk}) {
     const Functions functions = functions_of(text);
     const verify::Certificate certificate = certificate_of(functions);
     INFO(certificate.summary());
