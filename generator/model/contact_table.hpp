@@ -49,6 +49,8 @@ class ContactTable {
   void require_text(const Value& value, const std::string& what) const;
   /// An expression, as written, in parentheses. A unit behind it, as in "2 m", stands in brackets.
   std::string expression(const Value& value, const std::string& what) const;
+  /// The same of a vector, which may be three components.
+  std::string vector(const Value& value, const std::string& what) const;
   const std::vector<Value>& list(const Value& value, const std::string& what) const;
   Value& begin(const Value& at, const std::string& suffix);
   void particles(const Value& value);

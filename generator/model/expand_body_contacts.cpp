@@ -133,7 +133,7 @@ void ContactTable::add_on_surface(const Value& at, const std::string& suffix, co
 void ContactTable::points(const Value& value) {
   if (!value.is(Value::Kind::table) || value.entries.empty())
     fail(value, "has no points", "write points = { heel = \"<vector from the centre of mass>\", toe = \"..\" }");
-  for (const Entry& entry : value.entries) add_point(entry.value, entry.key, expression(entry.value, "a point"));
+  for (const Entry& entry : value.entries) add_point(entry.value, entry.key, vector(entry.value, "a point"));
 }
 
 void ContactTable::corners(const Value& value) {
@@ -158,7 +158,7 @@ std::string ContactTable::normal_of(const Value& on) const {
   const Value* normal = on.is(Value::Kind::table) ? on.find("normal") : nullptr;
   if (normal == nullptr)
     fail(on, "has a shape, which touches planes", "write on = \"ground\", or on = { point = \"..\", normal = \"..\" }");
-  return "unit(" + expression(*normal, "the normal") + ")";
+  return "unit(" + vector(*normal, "the normal") + ")";
 }
 
 std::pair<const BodyShape*, std::vector<std::string>> ContactTable::sizes_of(const Value& value) const {
@@ -202,7 +202,7 @@ std::vector<std::string> ContactTable::values_of(const Value& on, const Obstacle
   for (const char* key : kind.further) {
     const Value* further = on.find(key);
     if (further == nullptr) fail(on, fmt::format("has no {}", key), fmt::format("add {} = \"..\"", key));
-    values.push_back(expression(*further, fmt::format("the {}", key)));
+    values.push_back(vector(*further, fmt::format("the {}", key)));
   }
   for (const Entry& entry : on.entries) {
     const bool known =

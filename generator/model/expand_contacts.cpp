@@ -94,6 +94,17 @@ std::string ContactTable::expression(const Value& value, const std::string& what
   return "(" + bracket_unit(value.text) + ")";
 }
 
+std::string ContactTable::vector(const Value& value, const std::string& what) const {
+  if (!value.is(Value::Kind::array)) return expression(value, what);
+  if (value.items.size() != 3)
+    fail(value, fmt::format("gives {} with {} components", what, value.items.size()),
+         "write three, along E1, E2, E3, or a vector as text");
+  std::vector<std::string> terms;
+  for (std::size_t k = 0; k < 3; ++k)
+    terms.push_back(fmt::format("{}*E{}", expression(value.items[k], "a component"), k + 1));
+  return fmt::format("({})", fmt::join(terms, " + "));
+}
+
 const std::vector<Value>& ContactTable::list(const Value& value, const std::string& what) const {
   if (!value.is(Value::Kind::array))
     fail(value, fmt::format("gives {} as {}", what, kind_name(value.kind)), "write a list in brackets");
@@ -142,7 +153,7 @@ std::function<std::string(const std::string&)> ContactTable::gap_of_particle(con
         source_.fail(entry.span, fmt::format("a plane under particles has no key {}", quote(entry.key)),
                      "its keys are point, normal; a plane that moves along itself needs a [[body]] with points");
     }
-    return [size, normal = normal_of(on), at = expression(*point, "the point")](const std::string& name) {
+    return [size, normal = normal_of(on), at = vector(*point, "the point")](const std::string& name) {
       return fmt::format("dot({} - {}, {}) - {}", name, at, normal, size);
     };
   }

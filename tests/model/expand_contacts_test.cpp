@@ -75,6 +75,24 @@ limits = { x = ["-a", "2*a"], y = [0, 1] }
   CHECK(named("stop_y_upper").unilateral);
 }
 
+TEST_CASE("contact tables: vectors may be three components") {
+  const auto gap = [](const std::string& contact) {
+    const model::Model model = read_model_text(box + contact, "t.toml");
+    REQUIRE(unilateral(model) == 1);
+    return model.constraints.front().name;
+  };
+  CHECK_FALSE(
+      gap("[[contact]]\nname = \"c\"\nbody = \"box\"\npoints = { p = [0, \"a\", \"-a/2\"] }\non = { point = [0, 0, "
+          "0], normal = [0, 0, 1] }\n")
+          .empty());
+  CHECK_FALSE(gap("[[contact]]\nname = \"c\"\nbody = \"box\"\nshape = { sphere = 0.1 }\non = { cylinder = 1, point = "
+                  "[0, 1, 0], "
+                  "axis = [1, 0, 0] }\n")
+                  .empty());
+  CHECK(error_of("[[contact]]\nname = \"c\"\nbody = \"box\"\npoints = { p = [0, 1] }\non = \"ground\"\n")
+            .find("gives a point with 2 components") != std::string::npos);
+}
+
 TEST_CASE("contact tables: limits have units, as other values have") {
   const auto with = [](const std::string& lower) {
     return read_model_text(box + "[[contact]]\nname = \"stop\"\nlimits = { x = [\"" + lower + "\", \"2 m\"] }\n",
