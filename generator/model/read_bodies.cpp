@@ -149,7 +149,7 @@ void BodiesReader::read_rotation(Frame& frame, std::uint32_t index, const Value&
     if (found.family == "fixed") {
       frame_sources_[index].axis = frame_sources_[frame.parent].axis;
       frame_sources_[index].keeps_attitude = frame_sources_[frame.parent].keeps_attitude;
-      frame_sources_[index].starts_aligned = frame_sources_[frame.parent].starts_aligned;
+      frame_sources_[index].starts_aligned = frame.parent == 0 || frame_sources_[frame.parent].starts_aligned;
     }
   }
 }
@@ -171,8 +171,8 @@ void BodiesReader::read_axis_rotation(Frame& frame, std::uint32_t index, const V
   const FrameDeclaration& parent = frame_sources_[frame.parent];
   // In plane motion all bodies rotate about E3.
   const auto in_space = numbers_of(axis.node);
-  const bool common = parent.starts_aligned && parent.axis && parent.axis->numbers && in_space &&
-                      parallel(*parent.axis->numbers, *in_space);
+  const bool common = parent.has_axes_of_space() || (parent.starts_aligned && parent.axis && parent.axis->numbers &&
+                                                     in_space && parallel(*parent.axis->numbers, *in_space));
   const TypedNode along = frame.parent == 0 || common ? axis : resolver_.in_axes(axis, frame.parent);
   if (along.node == no_node) {
     source_.fail(written.span, "this axis is not fixed in the parent",
@@ -187,7 +187,8 @@ void BodiesReader::read_axis_rotation(Frame& frame, std::uint32_t index, const V
       parent.axis && parent.axis->numbers && direction.numbers && parallel(*parent.axis->numbers, *direction.numbers);
   frame_sources_[index].keeps_attitude = parent.keeps_attitude && local.at("angle").dependencies == 0;
   if (parent.keeps_attitude || same) frame_sources_[index].axis = direction;
-  frame_sources_[index].starts_aligned = frame.parent == 0 || (parent.starts_aligned && same);
+  frame_sources_[index].starts_aligned =
+      frame.parent == 0 || parent.has_axes_of_space() || (parent.starts_aligned && same);
   const Node& node = model_.arena[along.node];
   if (node.op == Op::fixed_basis) {
     add_stage(index, rotations::about_axis(node.index, "angle"), local, rotation.span);

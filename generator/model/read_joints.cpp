@@ -311,6 +311,7 @@ std::optional<std::size_t> JointsReader::own_axis_of_plane(const TypedNode& vect
   if (node.op != Op::fixed_basis) return std::nullopt;
   if (frame == 0) return node.index;
   const FrameDeclaration& of = frame_sources_[frame];
+  if (of.has_axes_of_space()) return node.index;
   if (!of.starts_aligned || !of.axis || !of.axis->numbers) return std::nullopt;
   for (std::size_t k = 0; k < 3; ++k) {
     if ((k == node.index) == cln::zerop((*of.axis->numbers)[k])) return std::nullopt;

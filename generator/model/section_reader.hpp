@@ -60,6 +60,9 @@ struct FrameDeclaration {
   std::optional<FixedDirection> axis = {};  // its axis of rotation, if that is fixed
   bool starts_aligned =
       false;  // it rotates about that axis only, starting from E1, E2, E3: the axis has the same components in space
+
+  /// Whether its axes are E1, E2, E3 for ever.
+  bool has_axes_of_space() const { return starts_aligned && !axis; }
 };
 
 struct ReaderContext {

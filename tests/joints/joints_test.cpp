@@ -8,6 +8,7 @@
 
 #include "joints/joint.hpp"
 #include "joints/rod_on_base.hpp"
+#include "mechanics/mechanics.hpp"
 #include "support/folders.hpp"
 #include "support/simulation.hpp"
 
@@ -87,6 +88,26 @@ TEST_CASE("points and axes given at the start are equal to those given by two en
     CAPTURE(name);
     CHECK(std::abs(one.final(name) - two.final(name)) < 1e-8);
   }
+}
+
+TEST_CASE("E3 is the axis of a planar pin for a body that never turns, too") {
+  // The slider of a crank: its axes are E1, E2, E3.
+  const auto crank = [](const std::string& axis) {
+    return model::read_model_text(
+        "format = 1\n[coordinates]\ns = \"m\"\n[[body]]\nname = \"rod\"\nmass = 1\ninertia = 0.02\nposition = { "
+        "cartesian = "
+        "[\"x\", \"y\"] }\nrotation = { axis = \"E3\", angle = \"b\" }\n[[body]]\nname = \"slide\"\nmass = 1\ninertia "
+        "= "
+        "0.01\nposition = [\"s\", 0, 0]\nrotation = { fixed = true }\n[[body]]\nname = \"arm\"\nmass = 1\ninertia = "
+        "0.01\nrelative_to = \"slide\"\nrotation = { axis = \"E3\", angle = \"c\" }\nposition = \"slide + "
+        "0.1[m]*arm.e1\"\n[[joint]]\nname = \"j\"\ntype = \"pin\"\nbodies = [\"rod\", \"slide\"]\nat = [\"rod + "
+        "0.15[m]*rod.e1\", \"slide\"]\naxis = [\"E3\", \"" +
+            axis + "\"]\n",
+        "crank.toml");
+  };
+  const model::Model in_space = crank("E3"), in_slide = crank("slide.e3");
+  CHECK(mechanics::build_mechanics(in_space).constraints.size() ==
+        mechanics::build_mechanics(in_slide).constraints.size());
 }
 
 TEST_CASE("reactions may be given along the axes of a body") {
