@@ -230,7 +230,8 @@ class MjcfReader {
     to_anchor.p = anchor;
     joint.origin = place.pose * to_anchor;
     if (is_free) {
-      joint.start = transposed(joint.origin.R) * joint.origin.p;
+      joint.start = joint.origin.p;
+      joint.moves_along_parent = true;
       joint.origin.p = {};
     }
     Number reference;

@@ -311,7 +311,10 @@ void ModelWriter::write_joint(std::size_t index) {
     if (!joint.axis[k].is_zero())
       direction += fmt::format("{}{}*{}{}", direction.empty() || joint.axis[k].value < 0 ? "" : "+",
                                to_text(joint.axis[k]), axes, k + 1);
-  const auto term = [&](const std::string& q, std::size_t k) { return fmt::format(" + {}*{}{}", q, axes, k + 1); };
+  const std::string& place_axes = joint.moves_along_parent ? parent_axes : axes;
+  const auto term = [&](const std::string& q, std::size_t k) {
+    return fmt::format(" + {}*{}{}", q, place_axes, k + 1);
+  };
   std::string motion, rotation = fmt::format("{{ axis = \"{}\", angle = \"{}\" }}", direction, stem);
   if (joint.type == JointType::prismatic) {
     motion = unit ? fmt::format(" {} {}*{}{}", unit->second < 0 ? "-" : "+", stem, axes, unit->first + 1)

@@ -67,6 +67,7 @@ struct Joint {
   Number damping, friction, armature;
   Number stiffness, spring_reference;  // the force -stiffness (q - spring_reference)
   Vector start;                        // of a floating joint: its place at the start
+  bool moves_along_parent = false;     // of a floating joint: its place is along the axes of the parent, not its own
   std::optional<Mimic> mimic;
   std::optional<std::string> transmission;  // its name, if there is one
   std::vector<Drive> drives;

@@ -69,6 +69,16 @@ TEST_CASE("MJCF: a free body has the accelerations of a chain of three prismatic
   CHECK(difference(imported, test::floating_tree(), 11) < rounding);
 }
 
+TEST_CASE("MJCF: the place of a free joint is that in the world, whatever its attitude") {
+  const Imported imported(
+      mujoco("<body name=\"c\" pos=\"1 0 2\" quat=\"0.5 0.5 0.5 0.5\"><freejoint/>" + unit_inertia + "</body>"));
+  for (const char* part :
+       {"c_free_x = 1\n", "c_free_y = 0\n", "c_free_z = 2\n", "c_free_x*E1 + c_free_y*E2 + c_free_z*E3"}) {
+    CAPTURE(part);
+    CHECK(imported.text.text.find(part) != std::string::npos);
+  }
+}
+
 TEST_CASE("MJCF: a body has several joints, each at its own place, and a ball joint") {
   const std::string body =
       "<body name=\"a\" pos=\"0.1 0.2 0.3\">\n<joint name=\"s\" type=\"slide\" axis=\"0 0 1\"/>\n"
