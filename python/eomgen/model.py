@@ -410,18 +410,18 @@ class Model:
         scene: str = "default",
         parameters: Values = None,
         *,
-        time: Optional[float] = None,
+        at: Optional[float] = None,
         outputs: "Sequence[str] | str | None" = None,
         seed: int = 1,
         on_stage: Stage = None,
     ) -> Linearization:
-        """Linearises the equations about a state of a scene: its start, or the state at ``time`` in s.
+        """Linearises the equations about a state of a scene: its start, or the state that its run reaches at ``at``, in s.
 
         ``outputs``: names for C and D; without them those of the scene that have a slope there.
         """
         callbacks = _callbacks(on_stage, None)
         values = parameters or {}
-        return Linearization(**self._core.linearize(scene, values, time, seed, outputs or [], callbacks))
+        return Linearization(**self._core.linearize(scene, values, at, seed, outputs or [], callbacks))
 
     @checked
     def equilibria(
