@@ -67,6 +67,9 @@ class Parser {
       fail(token, "a comma is no decimal point",
            fmt::format("write {}.{}", tokens_[at_ - 1].text, tokens_[at_ + 1].text));
     }
+    if (token.text.starts_with('<') || token.text.starts_with('>'))
+      fail(token, fmt::format("{} does not fit here", quote(token.text)),
+           "a condition stands in if(a > b, x, y); what is to become 0, as at an event, is a difference: a - b");
     fail(token, fmt::format("{} does not fit here", quote(token.text)),
          token.text == ")" ? "there is no open parenthesis for it" : "check the expression up to this place");
   }

@@ -179,8 +179,12 @@ void refuse_start(const StartProblem& problem, StartRows& rows, std::uint8_t ord
   const bool alone =
       open.find(',') == std::string::npos;  // at most one unknown: no other one could satisfy the constraint
   const std::string others = contradicting(problem, rows, order, row, free);
+  const bool approaches = constraint.unilateral && order == 1 && off < 0;
   const std::string remedy =
-      !others.empty()
+      approaches
+          ? "the contact approaches at the start, and no impact is at the start: begin above its surface, however "
+            "little, or with a speed that does not approach"
+      : !others.empty()
           ? fmt::format(
                 "it contradicts {}: no unknown lessens one without the other; leave out or change one of them{}",
                 others, given.empty() ? "" : ", or the values given")

@@ -40,6 +40,8 @@ std::vector<WrongModel> wrong_expressions() {
        "add the missing ')'"},
       {"a closing parenthesis too many", pendulum({{"-g*E3", "-g)*E3"}}), "11:14", "')' does not fit here",
        "there is no open parenthesis for it"},
+      {"a comparison alone", pendulum({{"L = \"1 m\"", "L = \"1 < 2\""}}), "5:8", "'<' does not fit here",
+       "a condition stands in if(a > b, x, y); what is to become 0, as at an event, is a difference: a - b"},
       {"an equation", pendulum({}, "[[constraint]]\nname = \"rod\"\nholonomic = \"R = L\"\n"), "14:16",
        "'=' cannot be used in an expression",
        "an expression is a value, not an equation: write what is to be 0, such as \"R - d\""},

@@ -250,6 +250,10 @@ TEST_CASE("stops: a contact is closed at the start by default, and one that cann
   CHECK(std::abs(end.rows.at(0, "y") - 2) <= closed_form);
   CHECK_THROWS_WITH_AS(run_text("sunk_ball", ball + "[scene.default]\nt = [0, 0.1]\ninitial = { y = 0.5 }\n"),
                        doctest::Contains("the start breaks constraint 'floor'"), Error);
+  CHECK_THROWS_WITH_AS(
+      run_text("meeting_ball",
+               ball + "[scene.default]\nt = [0, 0.1]\ninitial = { x = 0, y = 1, y_dot = -1, x_dot = 0 }\n"),
+      doctest::Contains("the contact approaches at the start"), Error);
 }
 
 TEST_CASE("stops: a body that slides on a floor slides on where a coordinate becomes stationary along the floor") {
