@@ -34,6 +34,9 @@ class AdmissibleForces {
   constructor(x, Z, limits) { Object.assign(this, {x, Z, limits, size: Math.max(0, ...limits.map((limit) => limit.size))}); }
 
   static wantedMargin = 1e-3;
+  static lastWeight = 1e-12;
+  // The error of the largest margin.
+  error() { return AdmissibleForces.lastWeight * (1 + this.limits.reduce((sum, {normal, holds}) => sum + (normal >= 0 ? 1 : 0) + (holds ? 1 : 0), 0)); }
   // The least margin of all limits, as a share of the sizes of their forces; 1 at most.
   static leastMargin(limits, x) {
     let least = 1;
@@ -66,7 +69,7 @@ class AdmissibleForces {
   largestMargin() {
     const d = this.Z.length;
     let v = [...new Array(d).fill(0), AdmissibleForces.leastMargin(this.limits, this.x) - 1];  // y in units of size, s
-    for (let weight = 1; weight >= 1e-9; weight *= 0.1) {
+    for (let weight = 1; weight >= AdmissibleForces.lastWeight; weight *= 0.1) {
       for (let step = 0; step < 30; ++step) {
         const now = this.evaluate(v, weight, true);
         const direction = Array.from(solveRows(now.hessian.map((row, i) => [...row, -now.gradient[i]]), d + 1)), fall = direction.reduce((sum, value, i) => sum + value * now.gradient[i], 0);

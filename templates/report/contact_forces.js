@@ -108,6 +108,7 @@ class ContactForces {
       }
       if (this.isSticking(j)) this.slips(j).forEach((row, a) => { patterns.push(this.tangentPattern(j, a)); rows.push(row); });
     });
+    this.choiceError = 0;
     if (patterns.length > 0) {
       const responses = patterns.map((pattern) => this.response(t, x, u, pattern));
       if (responses.includes(null)) return false;
@@ -143,7 +144,10 @@ class ContactForces {
     });
     // A contact whose normal force is that of another one (a stop on which friction acts) has no limit of its own.
     const own = limits.filter((limit, j) => limit !== null && limit.size > 0 && !(limit.holds && limit.normal < 0 && this.isHeld(j)));
-    return AdmissibleForces.leastMargin(own, found) >= AdmissibleForces.wantedMargin ? found : new AdmissibleForces(found, forcesWithoutEffect(responses), own).find();
+    if (AdmissibleForces.leastMargin(own, found) >= AdmissibleForces.wantedMargin) return found;
+    const chosen = new AdmissibleForces(found, forcesWithoutEffect(responses), own);
+    if (chosen.Z.length > 0) this.choiceError = chosen.error() * largest;
+    return chosen.find();
   }
   // The sum of the terms of the acceleration of a row. A share of the largest one, of any contact, is rounding.
   observeAcceleration(row) {

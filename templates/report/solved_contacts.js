@@ -20,7 +20,7 @@ class SolvedContacts extends ContactTransitions {
     this.observeState(x);
     const forces = this.contacts.map((_, j) => {
       this.sizes.force[j] = Math.max(this.sizes.force[j], this.forceSize[j] || 0);
-      return Math.max(1e-11 * this.sizes.force[j], this.accelerationRounding() * (this.forcePerAcceleration[j] || 0));
+      return Math.max(1e-11 * this.sizes.force[j], this.accelerationRounding() * (this.forcePerAcceleration[j] || 0), this.choiceError || 0);
     });
     return bounds.map(({j, k}) => {
       const at = this.contacts[j], state = this.mode[j];

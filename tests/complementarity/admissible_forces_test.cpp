@@ -11,6 +11,7 @@ using eom::contacts::AdmissibleForces;
 using eom::contacts::ForceLimit;
 using eom::contacts::forces_without_effect;
 using eom::contacts::least_margin;
+using eom::contacts::margin_error;
 
 namespace {
 
@@ -35,7 +36,23 @@ TEST_CASE("admissible forces: two feet share friction as long as any share holds
   }
   AdmissibleForces over(Eigen::Vector4d(1, 1.05, 3, 1.05), Z, limits);
   // The largest margin is the same at both feet: (4 mu - push)/2.
-  CHECK(std::abs(least_margin(limits, over.find()) + 0.05) < 1e-8);  // the last weight of the barrier, times the terms
+  CHECK(std::abs(least_margin(limits, over.find()) + 0.05) < 1e-11);  // the last weight of the barrier, times the terms
+}
+
+// A wheel in the corner of a floor and a wall, without a load on the wall. Friction at the wall turns it, so that of
+// the floor is as large, and so is the force of the wall: N = 1 - T, T, T, T with T <= mu T has T = 0 alone.
+TEST_CASE("admissible forces: a single set of forces within the limits is found within the stated error") {
+  const std::vector<ForceLimit> limits{foot(0, 0.3), foot(2, 0.3)};
+  Eigen::MatrixXd Z(4, 1);
+  Z << -1, 1, 1, 1;
+  for (const double begin : {0.0, 0.5, -0.2}) {
+    CAPTURE(begin);
+    AdmissibleForces corner(Eigen::Vector4d(1 - begin, begin, begin, begin), Z, limits);
+    const Eigen::VectorXd x = corner.find();
+    CHECK(std::abs(x(2)) <= margin_error(limits));
+    CHECK(least_margin(limits, x) >= -margin_error(limits));
+    CHECK(margin_error(limits) < 1e-11);
+  }
 }
 
 TEST_CASE("admissible forces: they depend continuously on the loads") {

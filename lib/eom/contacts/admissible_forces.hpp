@@ -47,6 +47,16 @@ inline double least_margin(const std::vector<ForceLimit>& limits, const Eigen::V
   return least;
 }
 
+inline constexpr double last_barrier_weight = 1e-12;
+
+/// The error of the largest margin that AdmissibleForces finds: a share of the forces for each term of the barrier.
+/// Where the limits leave one set of forces alone, its margin is 0 but for this.
+inline double margin_error(const std::vector<ForceLimit>& limits) {
+  double terms = 1;
+  for (const ForceLimit& limit : limits) terms += (limit.normal >= 0 ? 1 : 0) + (limit.holds ? 1 : 0);
+  return last_barrier_weight * terms;
+}
+
 /// Finds forces x + Z y within the limits.
 class AdmissibleForces {
  public:
@@ -80,7 +90,7 @@ class AdmissibleForces {
 
  private:
   static constexpr double pull = 1e-7;  // towards small y: margins may grow without bound
-  static constexpr double last_weight = 1e-9, weight_ratio = 0.1;
+  static constexpr double last_weight = last_barrier_weight, weight_ratio = 0.1;
   static constexpr int bisections = 40, most_newton_steps = 30;
 
   /// Affine functions of v = (y, s): at + slopes v, one per row.

@@ -241,6 +241,7 @@ class ContactForces {
       force_per_acceleration_[j] = std::max(force_per_acceleration_[j], 1 / share);
     }
     margins_.assign(set_.contacts.size(), 1.0);
+    choice_error_ = 0;
     std::fill(lambda_.begin(), lambda_.end(), 0.0);
     std::fill(phi_.begin(), phi_.end(), std::array<double, 2>{});
     if (count > 0) {
@@ -292,6 +293,9 @@ class ContactForces {
   double force_per_acceleration(std::size_t j) const { return force_per_acceleration_[j]; }
   /// The size of the forces that balance the terms of the accelerations of a contact: the scale of their rounding.
   double force_size(std::size_t j) const { return force_size_[j]; }
+  /// The error of forces that the motion does not determine, of the last solve(): a disc in a corner touches the wall
+  /// without a force.
+  double choice_error() const { return choice_error_; }
   /// Of a sliding contact: the derivative of the acceleration of its gap with respect to lambda. Not positive:
   /// Painleve's case, in which its law has no solution or several.
   double margin(std::size_t j) const { return margins_[j]; }
@@ -372,10 +376,11 @@ class ContactForces {
   LeastNormSolver least_norm_;
   std::vector<ForceLimit> limits_;  // of the forces of patterns_
   Vector preload_;                  // forces without effect that had the largest margins in some earlier state
+  double preload_margin_ = 0;       // the least of these margins
   Matrix effect_inverse_;           // pseudoinverse of responses_ of some earlier state, columns of length 1
   Vector free_;
   Matrix responses_, W_;  // n x patterns; of rows_
-  double least_slip_ = 0, start_slip_ = 0, largest_acceleration_ = 0;
+  double least_slip_ = 0, start_slip_ = 0, largest_acceleration_ = 0, choice_error_ = 0;
   std::size_t changes_ = 0;
   bool undetermined_ = false;
 };

@@ -16,16 +16,24 @@ inline void ContactForces::make_admissible(Vector& forces, ForceChoice choice) {
   if (choice == ForceChoice::any) return;
   write_limits();
   if (least_margin(limits_, forces) >= wanted_margin) return;  // most often
+  const double largest = *std::max_element(force_size_.begin(), force_size_.end());
+  const double error = margin_error(limits_);
   if (choice == ForceChoice::admissible && preload_.size() == forces.size() && remove_effect(preload_)) {
+    // Where limits leave little room, half of what the last search found is enough, and all within its error.
+    const double enough = std::min(wanted_margin, std::max(preload_margin_ / 2, -error));
     const Vector preloaded = forces + preload_;
-    if (least_margin(limits_, preloaded) >= wanted_margin) {
+    const double margin = least_margin(limits_, preloaded);
+    if (margin >= enough) {
+      if (margin < wanted_margin) choice_error_ = error * largest;
       forces = preloaded;
       return;
     }
   }
   AdmissibleForces found(forces, forces_without_effect(responses_), limits_);
   const Vector chosen = found.find();
+  choice_error_ = error * largest;
   preload_ = found.best() - forces;
+  preload_margin_ = least_margin(limits_, found.best());
   forces = chosen;
 }
 

@@ -79,7 +79,8 @@ class Thresholds {
   }
   double speed_rounding() const { return 1e-14 * sizes_.speed; }
   double force_rounding(std::size_t j) const {
-    return std::max(1e-11 * sizes_.force[j], forces_.acceleration_rounding() * forces_.force_per_acceleration(j));
+    return std::max({1e-11 * sizes_.force[j], forces_.acceleration_rounding() * forces_.force_per_acceleration(j),
+                     forces_.choice_error()});
   }
   double gap_rounding(std::size_t j, const double* x) const {
     constexpr double roundings = 16, of_gaps = 3e-14;
