@@ -57,7 +57,10 @@ class Run {
     const int code = stepper_.evaluate_start(t_);
     if (code != 0)
       return end(outcome_of_abi_code(code),
-                 "the right-hand side returned code " + std::to_string(code) + " at the start");
+                 (code == 1                 ? std::string("the mass matrix is singular")
+                  : code == code_not_finite ? "an acceleration is not finite"
+                                            : "the right-hand side returned code " + std::to_string(code)) +
+                     " at the start");
     if (!all_finite(stepper_.x0()) || !all_finite(stepper_.derivative0()))
       return end(Outcome::not_finite, "the state or its derivative is not finite at the start");
     if (options_.fixed_step > 0) return plan_fixed_steps();
