@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <eom/hybrid/methods.hpp>
+#include <eom/hybrid/stepwise_run.hpp>
 
 #include "eomgen/compiled_state.hpp"
 #include "eomgen/motion_event.hpp"
@@ -13,7 +14,6 @@
 #include "lists.hpp"
 #include "model/names.hpp"
 #include "run/eligibility.hpp"
-#include "run/integration.hpp"
 #include "run/methods.hpp"
 #include "run/monitored_functions.hpp"
 
@@ -54,7 +54,7 @@ eom::hybrid::Signal held(double t, double value) { return {{}, {t}, {value}, {}}
 struct SimulationState::Data {
   std::shared_ptr<const CompiledModel::State> model;
   double t;
-  std::shared_ptr<const run::StepwiseState> run;
+  eom::hybrid::StepwiseRun::State run;
 };
 
 double SimulationState::t() const { return data_->t; }
@@ -72,7 +72,7 @@ struct Simulation::Data {
   std::function<void(double t, std::span<const double> values)> row;
   double every;            // interval of rows, s; 0: no rows
   Advance* now = nullptr;  // the advance in progress
-  run::StepwiseRun run;
+  eom::hybrid::StepwiseRun run;
   std::vector<double> parameters;
 };
 
@@ -125,7 +125,7 @@ Advance Simulation::Data::advance(double t_end, bool one_step, const CallControl
     const auto keep = [&result](const eom::hybrid::Event& event, std::span<const double>) {
       result.events.push_back(motion_event(event));
     };
-    const eom::Result end = run.advance(t_end, one_step, call.stopped(), keep);
+    const eom::Result end = run.advance(t_end, {one_step, call.stopped(), keep});
     result.outcome = eom::name(end.outcome);
     result.detail = end.detail;
     result.t = end.t;
@@ -228,7 +228,7 @@ void Simulation::restore(const SimulationState& from) {
   if (from.data_->model != data_->model)
     throw Error("simulation", {}, "the state belongs to another compiled model",
                 "restore it into a simulation of the CompiledModel that it was saved from");
-  data_->run.restore(*from.data_->run);
+  data_->run.restore(from.data_->run);
   data_->parameters.assign(data_->run.parameters().begin(), data_->run.parameters().end());
 }
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One integration of a request, with access to its steps: eom::hybrid::Integration, bound to a scene. Runs of problems,
-// at once and in pieces, whose code is compiled here once.
+// One integration of a request, with access to its steps: eom::hybrid::Integration, bound to a scene.
 #pragma once
 
-#include <atomic>
 #include <eom/hybrid/problem.hpp>
 #include <eom/hybrid/run_result.hpp>
 #include <eom/hybrid/segments.hpp>
@@ -50,39 +48,5 @@ class Integration {
 
 /// Integrates the scene. Throws Error{stage "run"} for a solver that does not exist or needs a step.
 RunResult integrate_scene(const RunRequest& request);
-
-/// All that the future of a StepwiseRun depends on.
-struct StepwiseState;
-
-/// eom::hybrid::StepwiseRun (eom/hybrid/stepwise_run.hpp), whose functions these are.
-class StepwiseRun {
- public:
-  explicit StepwiseRun(eom::hybrid::Problem problem);
-  ~StepwiseRun();
-  StepwiseRun(const StepwiseRun&) = delete;
-  StepwiseRun& operator=(const StepwiseRun&) = delete;
-
-  /// one_step: ends after one step of the method.
-  eom::Result advance(double t_end, bool one_step, const std::atomic<bool>* interrupt,
-                      const eom::hybrid::OnEvent& event);
-  double t() const;
-  std::vector<double> state() const;
-  int outputs(std::span<double> y);
-  std::vector<double> inputs();
-  std::span<const double> parameters() const;
-  void set_input(std::size_t input, eom::hybrid::Signal signal);
-  void set_parameters(std::span<const double> values);
-  void restart(double t, std::span<const double> x, std::vector<bool> open);
-  std::vector<double> gaps(double t, std::span<const double> x);
-  std::shared_ptr<const StepwiseState> save() const;
-  void restore(const StepwiseState& from);
-
- private:
-  struct Pieces;
-  std::unique_ptr<Pieces> pieces_;
-};
-
-/// eom::hybrid::run, instantiated once.
-eom::hybrid::RunResult run_problem(const eom::hybrid::Problem& problem);
 
 }  // namespace eomgen::run

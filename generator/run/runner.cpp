@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <eom/automatic.hpp>
 #include <eom/hybrid/methods.hpp>
+#include <eom/hybrid/run.hpp>
 #include <eom/hybrid/segments.hpp>
 
 #include "model/names.hpp"
@@ -168,7 +169,7 @@ RunResult integrate_scene(const RunRequest& request) {
   const eom::hybrid::Problem problem = make_problem(request, solver);
   if (const std::vector<eom::hybrid::FinerSteps> finer = eom::hybrid::finer_steps(problem); !finer.empty())
     result.reason.shorter_steps_from = finer.front().begin;
-  const eom::hybrid::RunResult run = run_problem(problem);
+  const eom::hybrid::RunResult run = eom::hybrid::run(problem);
   if (request.scene.t1 == request.scene.t0 && result.solver == eom::Automatic::name) {
     result.solver = default_solvers.adaptive;
     result.reason = {SolverReason::Basis::empty_span};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <eom/hybrid/run.hpp>
+#include <eom/hybrid/segments.hpp>
 #include <string>
 #include <vector>
 

@@ -25,18 +25,35 @@ if grep -rIlF -e "$source" -e "$build" -e "$scratch/first" -- "$prefix"; then re
 
 echo "-- a user's program builds with it and links neither GiNaC nor CLN"
 cp -R "$source/tests/install/consumer" "$scratch/source"
-"$cmake" -S "$scratch/source" -B "$scratch/consumer" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE=-O0 \
+cp "$source/examples/hybrid/rough_sphere.cpp" "$scratch/source"
+"$cmake" -S "$scratch/source" -B "$scratch/consumer" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE="-O0 $sanitizers" \
   -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF >"$scratch/configure.log" 2>&1 ||
   { cat "$scratch/configure.log"; refuse "find_package(eomgen)"; }
 grep -q "^eomgen_DIR:PATH=$prefix/" "$scratch/consumer/CMakeCache.txt" || refuse "another eomgen was found than the one installed here"
 "$cmake" --build "$scratch/consumer"
 for program in oscillator pendulum; do "$scratch/consumer/$program" || refuse "$program"; done
-EOMGEN="$prefix/bin/eomgen" EOMGEN_CACHE_DIR="$scratch/hybrid-cache" RUNTIME="$prefix/include" CXX="$cxx" \
-  CXXFLAGS="-O0 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror" "$source/examples/hybrid/run" "$scratch/hybrid" ||
+library=$(find "$prefix" -name libeomgen_hybrid.a)
+[[ -n $library ]] || refuse "the compiled runtime is not installed"
+warnings="-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror"
+EOMGEN="$prefix/bin/eomgen" EOMGEN_CACHE_DIR="$scratch/hybrid-cache" RUNTIME="$prefix/include" LIBRARY="$library" CXX="$cxx" \
+  CXXFLAGS="-O0 $warnings $sanitizers" "$source/examples/hybrid/run" "$scratch/hybrid" ||
   refuse "emitted code and the runtime alone do not give the table of eomgen run"
+"$scratch/consumer/rough_sphere" "$scratch/consumer.csv" || refuse "a program that links eomgen::hybrid"
+cmp "$scratch/consumer.csv" "$scratch/hybrid/run.csv" || refuse "a program that links eomgen::hybrid does not give the table of eomgen run"
+
+echo "-- the headers alone compile where they are included"
+"$cxx" -std=c++20 -fsyntax-only $warnings -I "$prefix/include" -isystem "${EIGEN:-/usr/include/eigen3}" -I "$scratch/hybrid" \
+  "$source/examples/hybrid/rough_sphere.cpp" || refuse "the headers of the runtime without its library"
+
+echo "-- headers of another version do not link with the compiled runtime"
+cp -R "$prefix/include/eom" "$scratch/other" && mkdir "$scratch/headers" && mv "$scratch/other" "$scratch/headers/eom"
+sed -i 's/^#define EOM_VERSION_PATCH .*/#define EOM_VERSION_PATCH 99/' "$scratch/headers/eom/version.hpp"
+said=$(EOMGEN="$prefix/bin/eomgen" EOMGEN_CACHE_DIR="$scratch/hybrid-cache" RUNTIME="$scratch/headers" LIBRARY="$library" CXX="$cxx" \
+  CXXFLAGS="-O0 $sanitizers" "$source/examples/hybrid/run" "$scratch/hybrid" 2>&1) && refuse "headers of another version link with the library"
+grep -q 'eom::hybrid::run(.*Layout<' <<<"$said" || refuse "the linker does not name the function of the other version: $said"
 cmp "$scratch/hybrid/P5_rough_sphere_run.hpp" "$scratch/consumer/rough_sphere_equations_eom/P5_rough_sphere_run.hpp" ||
   refuse "eom_generate writes another header of a run than eomgen emit"
-for program in consumer/oscillator consumer/pendulum hybrid/rough_sphere; do
+for program in consumer/oscillator consumer/pendulum consumer/rough_sphere; do
   linked=$(ldd "$scratch/$program")
   if grep -Ei 'ginac|libcln|libgmp' <<<"$linked"; then refuse "$program links computer algebra"; fi
 done

@@ -46,7 +46,7 @@ if grep -vE ' \./$| \./usr/' content.txt; then refuse "these files are not in /u
 if grep -E '/(tests|build|\.git|CMakeFiles|__pycache__)(/|$)|\.(o|a\.tmp|pyc)$' content.txt; then refuse "these files are no part of the package"; fi
 if grep -E '^-.{7}w' content.txt; then refuse "everyone may write these files"; fi
 if grep -E '^d.{7}w' content.txt; then refuse "everyone may write these folders"; fi
-for file in bin/eomgen 'lib/(.*/)?libeomgen[.]' share/eomgen/models/P7_moving_sphere.toml include/eom/hybrid/run.hpp \
+for file in bin/eomgen 'lib/(.*/)?libeomgen[.]' 'lib/(.*/)?libeomgen_hybrid[.]a' share/eomgen/models/P7_moving_sphere.toml include/eom/hybrid/run.hpp \
   'lib/(.*/)?cmake/eomgen/eomgenConfig.cmake' share/doc/eomgen/LICENSE share/doc/eomgen/LICENSE.runtime; do
   grep -qE " \./usr/$file" content.txt || refuse "the package has no $file"
 done

@@ -276,7 +276,7 @@ inline ModeArray Instance::mode() {
   if (exchange_) return exchange_->mode();
   ModeArray mode(problem_.mode_layout());
   if (stepwise_) {
-    const auto contacts = stepwise_->save().modes.contacts;
+    const auto contacts = stepwise_->save().modes->contacts;
     if (contacts) mode.set_contacts(contacts->mode);
   } else {
     for (std::size_t j = 0; j < problem_.starts_open.size(); ++j) {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "eom/hybrid/external_steps.hpp"
+#include "eom/hybrid/stepwise_modes.hpp"
 #include "eom/hybrid/stepwise_run.hpp"
 
 namespace eom::fmi {
@@ -165,7 +167,9 @@ void transfer(Archive& archive, hybrid::StepwiseRun::State& state) {
   transfer(archive, next_row);
   transfer(archive, inputs);
   transfer(archive, parameters);
-  transfer(archive, modes);
+  hybrid::StepwiseModes copy = modes ? *modes : hybrid::StepwiseModes{};
+  transfer(archive, static_cast<hybrid::Integration::State&>(copy));
+  modes = std::make_shared<const hybrid::StepwiseModes>(std::move(copy));
 }
 
 class ByteWriter {

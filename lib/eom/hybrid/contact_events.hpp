@@ -3,11 +3,12 @@
 // impacts, new modes, events.
 #pragma once
 
+#include "eom/hybrid/compiled_runtime.hpp"
 #include "eom/hybrid/integration.hpp"
 
 namespace eom::hybrid {
 
-inline EventAction Integration::change_contact(const EventPoint& point, const OnEvent& event) {
+EOM_RUNTIME_INLINE EventAction Integration::change_contact(const EventPoint& point, const OnEvent& event) {
   Crossing crossing = point.crossing;
   crossing.function -= context_.events.first_contact();
   const EventAction answer =
@@ -22,7 +23,7 @@ inline EventAction Integration::change_contact(const EventPoint& point, const On
   return slow_slip_.is_switch_due() ? EventAction::stop : answer;
 }
 
-inline EventAction Integration::change_solved_contact(const EventPoint& point, const OnEvent& event) {
+EOM_RUNTIME_INLINE EventAction Integration::change_solved_contact(const EventPoint& point, const OnEvent& event) {
   Crossing crossing = point.crossing;
   crossing.function -= context_.events.first_solved_contact();
   const EventAction answer = context_.solved_contacts->handle_event(

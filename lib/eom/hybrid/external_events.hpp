@@ -10,12 +10,13 @@
 #include <optional>
 #include <vector>
 
+#include "eom/hybrid/compiled_runtime.hpp"
 #include "eom/hybrid/external_steps.hpp"
 
 namespace eom::hybrid {
 
 /// Whether the last value of a function is beyond its surface.
-inline bool ExternalSteps::has_crossed(std::size_t i) const {
+EOM_RUNTIME_INLINE bool ExternalSteps::has_crossed(std::size_t i) const {
   const EventFunction& f = functions_[i];
   if (!is_watched(i) || !std::isfinite(g_[i])) return false;
   const int now = sign(g_[i]);
@@ -25,7 +26,7 @@ inline bool ExternalSteps::has_crossed(std::size_t i) const {
 }
 
 /// One step of the classical method of order 4. False: the right-hand side has no value on the way.
-inline bool ExternalSteps::move(double t, double h, std::vector<double>& x) {
+EOM_RUNTIME_INLINE bool ExternalSteps::move(double t, double h, std::vector<double>& x) {
   if (h == 0) return true;
   const std::size_t n = x.size();
   std::vector<double> k(n), sum(n), middle(x);
@@ -41,7 +42,7 @@ inline bool ExternalSteps::move(double t, double h, std::vector<double>& x) {
 }
 
 /// The time by which (t, x) is beyond the surface of function i, along the motion in the current mode.
-inline double ExternalSteps::time_since_crossing(std::size_t i, double t, const std::vector<double>& x) {
+EOM_RUNTIME_INLINE double ExternalSteps::time_since_crossing(std::size_t i, double t, const std::vector<double>& x) {
   const double longest = t - last_;
   if (!(longest > 0) || g_[i] == 0) return 0;
   std::vector<double> g(functions_.size()), before;
@@ -64,13 +65,14 @@ inline double ExternalSteps::time_since_crossing(std::size_t i, double t, const 
   return std::isfinite(at_back) ? back : 0;
 }
 
-inline void ExternalSteps::fail(Update& result, Outcome outcome) {
+EOM_RUNTIME_INLINE void ExternalSteps::fail(Update& result, Outcome outcome) {
   result.ended = true;
   result.outcome = outcome;
 }
 
 /// Handles the crossing that happened first. False: there is none, or the run ends.
-inline bool ExternalSteps::handle_crossing(double t, std::vector<double>& x, const OnEvent& event, Update& result) {
+EOM_RUNTIME_INLINE bool ExternalSteps::handle_crossing(double t, std::vector<double>& x, const OnEvent& event,
+                                                       Update& result) {
   if (!evaluate(t, x.data())) {
     fail(result, Outcome::not_finite);
     return false;
@@ -153,7 +155,8 @@ inline bool ExternalSteps::handle_crossing(double t, std::vector<double>& x, con
 }
 
 /// Handles a kink in time or samples that are due at t. False: none is, or the run ends.
-inline bool ExternalSteps::cross_time_event(double t, std::vector<double>& x, const OnEvent& event, Update& result) {
+EOM_RUNTIME_INLINE bool ExternalSteps::cross_time_event(double t, std::vector<double>& x, const OnEvent& event,
+                                                        Update& result) {
   const double at = next_event_;
   if (!(t >= at - due * std::max(1.0, std::abs(at)))) return false;
   const std::optional<Breakpoint> kink = next_kink_;

@@ -4,11 +4,12 @@
 
 #include <vector>
 
+#include "eom/hybrid/compiled_runtime.hpp"
 #include "eom/hybrid/integration.hpp"
 
 namespace eom::hybrid {
 
-inline Integration::State Integration::save() const {
+EOM_RUNTIME_INLINE Integration::State Integration::save() const {
   State state{{},
               {},
               context_.charts.save(),
@@ -24,7 +25,7 @@ inline Integration::State Integration::save() const {
   return state;
 }
 
-inline void Integration::restore(double t, const std::vector<double>& x, const State& from) {
+EOM_RUNTIME_INLINE void Integration::restore(double t, const std::vector<double>& x, const State& from) {
   context_.charts.restore(from.charts, x.data());
   context_.model.set_code(context_.charts.code());
   context_.model.reset_mode();

@@ -8,11 +8,13 @@
 #include <span>
 #include <vector>
 
+#include "eom/hybrid/compiled_runtime.hpp"
 #include "eom/hybrid/integration.hpp"
 
 namespace eom::hybrid {
 
-inline EventAction Integration::change_side(const EventPoint& point, std::size_t kink, const OnEvent& event) {
+EOM_RUNTIME_INLINE EventAction Integration::change_side(const EventPoint& point, std::size_t kink,
+                                                        const OnEvent& event) {
   Model& model = context_.model;
   const std::vector<std::size_t> before = model.sliding_kinks();
   if (model.is_sliding(kink)) {
@@ -28,8 +30,8 @@ inline EventAction Integration::change_side(const EventPoint& point, std::size_t
 }
 
 /// Reports the surfaces along which the state began or ended to slide. before: those before.
-inline void Integration::report_sliding(const std::vector<std::size_t>& before, double t, std::span<const double> x,
-                                        const OnEvent& event) {
+EOM_RUNTIME_INLINE void Integration::report_sliding(const std::vector<std::size_t>& before, double t,
+                                                    std::span<const double> x, const OnEvent& event) {
   const std::vector<std::size_t>& now = context_.model.sliding_kinks();
   if (!event || before == now) return;
   const auto report = [&](const char* kind, std::size_t k) { event({t, kind, problem_.code->kinks[k]}, x); };

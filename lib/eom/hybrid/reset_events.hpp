@@ -3,11 +3,12 @@
 // segments. Included by integration.hpp.
 #pragma once
 
+#include "eom/hybrid/compiled_runtime.hpp"
 #include "eom/hybrid/integration.hpp"
 
 namespace eom::hybrid {
 
-inline EventAction Integration::handle_event(const EventPoint& point, const OnEvent& event) {
+EOM_RUNTIME_INLINE EventAction Integration::handle_event(const EventPoint& point, const OnEvent& event) {
   const std::size_t i = point.crossing.function;
   const EventFunctions& functions = context_.events;
   context_.observe_kinks(point.largest);
@@ -32,7 +33,8 @@ inline EventAction Integration::handle_event(const EventPoint& point, const OnEv
 
 /// Enters the segment that ends at `until`; before: the previous one, null at the start of the run. Crosses a kink in
 /// time, takes samples, and handles the events that these cause. False: the run ends here.
-inline bool Integration::cross_boundary(const Segment* before, double until, Result& total, const OnEvent& event) {
+EOM_RUNTIME_INLINE bool Integration::cross_boundary(const Segment* before, double until, Result& total,
+                                                    const OnEvent& event) {
   const double from = before != nullptr ? before->end : problem_.t0;
   const bool watches = !problem_.events.empty() && resets_.any();
   std::vector<int> sides = event_memory_.sides;
@@ -53,7 +55,7 @@ inline bool Integration::cross_boundary(const Segment* before, double until, Res
   return total.outcome == Outcome::done;
 }
 
-inline void Integration::end_by_reset(Result& total) {
+EOM_RUNTIME_INLINE void Integration::end_by_reset(Result& total) {
   reason_ = reset_failed_;
   using Kind = Reason::Kind;
   total.outcome = reset_failed_.kind == Kind::event_chain           ? Outcome::step_too_small
@@ -62,7 +64,7 @@ inline void Integration::end_by_reset(Result& total) {
 }
 
 /// Handles an event of a model whose events or samples change the state, and others that occur at the same time.
-inline EventAction Integration::reset_at_event(const EventPoint& point, const OnEvent& event) {
+EOM_RUNTIME_INLINE EventAction Integration::reset_at_event(const EventPoint& point, const OnEvent& event) {
   const std::size_t i = point.crossing.function;
   if (problem_.events[i].reset.set.empty() && !problem_.events[i].stop) {  // a passing one
     if (event && resets_.occurs(i, point.t, point.x.data()))
