@@ -1,6 +1,7 @@
 """A particle on a rough sphere from Python: the default scene, which leaves the sphere, and one that comes to rest. Both reproduce
 the numbers of `eomgen run`, whose tables are the arguments."""
 import csv
+import os
 import sys
 
 import P5_rough_sphere as model
@@ -19,6 +20,20 @@ def compare(run, path):
 
 
 assert model.contacts == ("sphere",)
+
+# A compiled runtime that is named has to exist.
+library = os.environ.get("EOMGEN_LIBRARY")
+os.environ["EOMGEN_LIBRARY"] = "nowhere"
+try:
+    model.run()
+except ImportError as error:
+    assert "EOMGEN_LIBRARY" in str(error), error
+else:
+    raise AssertionError("another runtime was taken than the one that is named")
+del os.environ["EOMGEN_LIBRARY"]
+if library is not None:
+    os.environ["EOMGEN_LIBRARY"] = library
+
 leaves = model.run()
 compare(leaves, sys.argv[1])
 assert [kind for _, kind, _ in leaves.events] == ["lose_contact"] and leaves.power_balance < 1e-8 and leaves.error < 1e-6
