@@ -40,8 +40,8 @@ test::FinishedRun thousand_turns(const rotations::Rotation& r, const std::string
   // All axes of this body come near directions at the angle of (1, 1, 1) from E1, E2, E3 to H.
   const Eigen::Vector3d of_body = Eigen::Vector3d(H[0], H[1], H[2]).normalized(),
                         of_space = Eigen::Vector3d(1, 1, 1).normalized();
-  const Eigen::Matrix3d axes = Eigen::AngleAxisd(0.3, of_space).toRotationMatrix() *
-                               Eigen::Quaterniond::FromTwoVectors(of_body, of_space).toRotationMatrix();
+  const Eigen::AngleAxisd between(std::acos(of_body.dot(of_space)), of_body.cross(of_space).normalized());
+  const Eigen::Matrix3d axes = Eigen::AngleAxisd(0.3, of_space).toRotationMatrix() * between.toRotationMatrix();
   const test::Attitude written = *test::attitude_in(r, axes.transpose());
   std::string names;
   const std::string definitions = cosines(names);

@@ -2,39 +2,24 @@
 // Models with states of first order, against closed forms where the equations have one, and against equations by hand.
 #include <doctest/doctest.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <complex>
 
+#include "linear_motion.hpp"
 #include "tight_run.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
-
-namespace {
-
-/// x(t) of x' = A x, by the eigenvectors of A.
-Eigen::VectorXd linear_motion(const Eigen::MatrixXd& A, const Eigen::VectorXd& start, double t) {
-  const Eigen::EigenSolver<Eigen::MatrixXd> modes(A);
-  const Eigen::MatrixXcd V = modes.eigenvectors();
-  const Eigen::VectorXcd c = V.fullPivLu().solve(start.cast<std::complex<double>>());
-  const Eigen::VectorXcd grown = (modes.eigenvalues() * t).array().exp();
-  return (V * c.cwiseProduct(grown)).real();
-}
-
-}  // namespace
 
 // x'' = -f/m, f' = k (x' - f/c).
 TEST_CASE("maxwell_element: x and f are those of the linear equations, and the damper takes f^2/c") {
   const test::FinishedRun run = run_tight("maxwell_element");
   check_sound(run);
   const double m = run.parameter("m"), k = run.parameter("k"), c = run.parameter("c");
-  Eigen::Matrix3d A;
-  A << 0, 1, 0, 0, 0, -1 / m, 0, k, -k / c;
-  const Eigen::Vector3d start{0.1, 0, 0.1 * k};
+  const Matrix A{{0, 1, 0}, {0, 0, -1 / m}, {0, k, -k / c}};
+  const std::vector<double> start{0.1, 0, 0.1 * k};
   for (std::size_t i = 0; i < run.rows.size(); i += 25) {
-    const Eigen::VectorXd x = linear_motion(A, start, run.rows.t[i]);
+    const std::vector<double> x = linear_motion(A, start, run.rows.t[i]);
     CHECK(run.rows.at(i, "x") == doctest::Approx(x[0]).epsilon(followed).scale(1));
     CHECK(run.rows.at(i, "f") == doctest::Approx(x[2]).epsilon(followed).scale(1));
     CHECK(run.rows.at(i, "power") == doctest::Approx(-x[2] * x[2] / c).epsilon(followed).scale(1));
@@ -66,12 +51,13 @@ TEST_CASE("dc_motor: speed and current are those of the linear equations, from r
     check_sound(run);
     const auto p = [&run](const char* name) { return run.parameter(name); };
     const double u = 12;
-    Eigen::Matrix2d A;
-    A << -p("b") / p("J"), p("kt") / p("J"), -p("kt") / p("L"), -p("R") / p("L");
-    const Eigen::Vector2d rest = A.fullPivLu().solve(Eigen::Vector2d{0, -u / p("L")});
-    const Eigen::Vector2d start{0, current.value_or(0)};
+    const Matrix A{{-p("b") / p("J"), p("kt") / p("J")}, {-p("kt") / p("L"), -p("R") / p("L")}};
+    const double steady = u / (p("R") * p("b") + p("kt") * p("kt"));
+    const std::vector<double> rest{p("kt") * steady, p("b") * steady};
+    const std::vector<double> start{-rest[0], current.value_or(0) - rest[1]};
     for (std::size_t i = 0; i < run.rows.size(); i += 25) {
-      const Eigen::Vector2d x = rest + linear_motion(A, start - rest, run.rows.t[i]);
+      std::vector<double> x = linear_motion(A, start, run.rows.t[i]);
+      x[0] += rest[0], x[1] += rest[1];
       CHECK(run.rows.at(i, "phi_dot") == doctest::Approx(x[0]).epsilon(followed).scale(1));
       CHECK(run.rows.at(i, "i") == doctest::Approx(x[1]).epsilon(followed).scale(1));
       // Electrical power less the losses; the moment of the motor cancels.
@@ -87,11 +73,11 @@ TEST_CASE("pid_cart: the motion is that of the linear equations, and the integra
   check_sound(run);
   const auto p = [&run](const char* name) { return run.parameter(name); };
   const double m = p("m"), weight = m * p("g") * std::sin(p("slope"));
-  Eigen::Matrix3d A;  // of x - r, x', I - weight/ki
-  A << 0, 1, 0, -p("kp") / m, -p("kd") / m, p("ki") / m, -1, 0, 0;
-  const Eigen::Vector3d start{-p("r"), 0, -weight / p("ki")};
+  // Of x - r, x', I - weight/ki.
+  const Matrix A{{0, 1, 0}, {-p("kp") / m, -p("kd") / m, p("ki") / m}, {-1, 0, 0}};
+  const std::vector<double> start{-p("r"), 0, -weight / p("ki")};
   for (std::size_t i = 0; i < run.rows.size(); i += 25) {
-    const Eigen::VectorXd x = linear_motion(A, start, run.rows.t[i]);
+    const std::vector<double> x = linear_motion(A, start, run.rows.t[i]);
     CHECK(run.rows.at(i, "x") == doctest::Approx(p("r") + x[0]).epsilon(followed).scale(1));
     CHECK(run.rows.at(i, "I") == doctest::Approx(weight / p("ki") + x[2]).epsilon(followed).scale(1));
   }
