@@ -35,7 +35,8 @@ constexpr std::string_view macros[] = {
     "NDEBUG", "EDOM", "ERANGE", "EILSEQ", "EINTR", "EIO", "ENOMEM", "EINVAL", "EPERM", "EAGAIN", "EBUSY", "EXDEV",
     "BIG_ENDIAN", "LITTLE_ENDIAN", "BYTE_ORDER", "PDP_ENDIAN", "PAGE_SIZE", "PATH_MAX", "NAME_MAX", "PIPE_BUF", "CLOCKS_PER_SEC",
     "MB_CUR_MAX", "math_errhandling", "unix", "linux", "i386", "vax", "sun", "mips", "sparc", "near", "far", "interface", "small",
-    "assert", "offsetof", "isnan", "isinf", "signbit", "min", "max", "EOM_DEVICE", "EOM_GPU", "EOM_VERSION"};
+    "assert", "offsetof", "isnan", "isinf", "signbit", "min", "max", "EOM_DEVICE", "EOM_GPU", "EOM_VERSION",
+    "EOM_COMPILED_RUNTIME", "EOM_RUNTIME_INLINE"};
 
 // Prefixes under which headers define macros: M_PI, FP_NAN, DBL_MAX, INT32_MAX, FE_INVALID, ...
 constexpr std::string_view macro_prefixes[] = {"M_",   "FP_",   "DBL_", "FLT_",  "LDBL_", "INT", "UINT", "FE_",

@@ -121,11 +121,18 @@ TEST_CASE("emitted code: no model name collides with a name of the runtime") {
     if (std::isdigit(static_cast<unsigned char>(word[0])) == 0 && emit::mangled_id(word) == word)
       text += "namespace eom { using " + word + " = int; }\n";
   }
+  // The first error ends the compilation, and the last line is one: no integrator is instantiated for nothing.
+  const std::string end = "this line is reached";
+  text += "static_assert(false, \"" + end + "\");\n";
   const Folder folder;
   std::ofstream(folder.path + "/use.cpp") << text;
-  CHECK(compiler_diagnostics(
-            {EOMGEN_TEST_CXX, "-std=c++20", "-fsyntax-only", "-I", lib.string(), "-isystem", EOMGEN_TEST_EIGEN},
-            {folder.path + "/use.cpp"}) == "");
+  const std::string said =
+      compiler_diagnostics({EOMGEN_TEST_CXX, "-std=c++20", "-fsyntax-only", "-Wfatal-errors", "-DEOM_COMPILED_RUNTIME",
+                            "-I", lib.string(), "-isystem", EOMGEN_TEST_EIGEN},
+                           {folder.path + "/use.cpp"});
+  CAPTURE(said);
+  CHECK(said.find("error: static assertion failed: " + end) != std::string::npos);
+  CHECK(said.find("warning:") == std::string::npos);
 }
 
 TEST_CASE("emitted code: df/dt may be omitted from the Jacobian, in C and in C++") {
