@@ -90,6 +90,10 @@ endfunction()
 # their programs, so that they share precompiled headers.
 set(EOMGEN_TEST_OPTIONS $<$<CONFIG:Release>:-O1> -fPIE)
 
+# Of programs that wait for their child processes. Those that call the stages keep -O1: the linker takes functions of
+# headers from the tests, for the stages too.
+set(EOMGEN_DRIVER_OPTIONS $<$<CONFIG:Release>:-O0> -fPIE)
+
 # Headers that most test files include.
 set(EOMGEN_TEST_HEADERS <doctest/doctest.h> <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <optional>
   <random> <set> <span> <sstream> <string> <string_view> <utility> <variant> <vector>)
