@@ -110,6 +110,7 @@ bool VariationalJumps::change_contact(const eom::EventPoint& point) {
     const Direction& direction = directions_[d];
     const auto what = [&] {
       if (!bounces.empty()) return accumulation(bounces, t);
+      if (!same && has_unit_vectors()) throw NoAdjointEquations{fmt::format("a contact changes at t = {}", t)};
       if (!same) return fmt::format("beside the motion, a contact changes to another mode at t = {}", t);
       return fmt::format("the change of a contact at t = {} does not change smoothly with {}", t, direction.name);
     };
