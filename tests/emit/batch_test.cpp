@@ -34,6 +34,14 @@ std::vector<Example> in_single(std::vector<Example> all) {
   return all;
 }
 
+/// Compiles the functions for one state, once for all widths. Returns what the compiler reports.
+std::string compile_alone(const std::string& folder, const std::string& name) {
+  if (std::filesystem::exists(folder + "/alone.o")) return "";
+  return compiler_diagnostics(
+      {EOMGEN_TEST_CC, "-std=gnu11", "-O1", "-ffp-contract=off", "-c", "-o", folder + "/alone.o"},
+      {folder + "/" + name + ".c"});
+}
+
 /// The failure of the batch of these files; empty if every state has the same bits as alone.
 std::string wrong(const std::string& folder, const Example& e, const Width& width, const std::string& modes) {
   const std::string name = emit::mangled_id(e.context.id), program = folder + "/use";
@@ -56,8 +64,9 @@ std::string wrong(const std::string& folder, const Example& e, const Width& widt
     if (has(function)) command.emplace_back(define);
   }
   if (e.program.taylor) command.emplace_back("-DTAYLOR");
+  if (const std::string said = compile_alone(folder, name); !said.empty()) return said;
   const std::string said = compiler_diagnostics(
-      command, {EOMGEN_TEST_HARNESS, folder + "/" + name + ".c", folder + "/" + name + "_batch.c", "-lm"});
+      command, {EOMGEN_TEST_HARNESS, folder + "/" + name + "_batch.c", folder + "/alone.o", "-lm"});
   if (!said.empty()) return said;
   const emit::ProcessResult finished = emit::run_process({program});
   return finished.status == 0 ? "" : fmt::format("line {} of the harness: {}", finished.status, finished.output);
