@@ -34,15 +34,15 @@ grep -q "^eomgen_DIR:PATH=$prefix/" "$scratch/consumer/CMakeCache.txt" || refuse
 for program in oscillator pendulum; do "$scratch/consumer/$program" || refuse "$program"; done
 library=$(find "$prefix" -name libeomgen_hybrid.a)
 [[ -n $library ]] || refuse "the compiled runtime is not installed"
-warnings="-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror"
+warnings=(-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror)
 EOMGEN="$prefix/bin/eomgen" EOMGEN_CACHE_DIR="$scratch/hybrid-cache" RUNTIME="$prefix/include" LIBRARY="$library" CXX="$cxx" \
-  CXXFLAGS="-O0 $warnings $sanitizers" "$source/examples/hybrid/run" "$scratch/hybrid" ||
+  CXXFLAGS="-O0 ${warnings[*]} $sanitizers" "$source/examples/hybrid/run" "$scratch/hybrid" ||
   refuse "emitted code and the runtime alone do not give the table of eomgen run"
 "$scratch/consumer/rough_sphere" "$scratch/consumer.csv" || refuse "a program that links eomgen::hybrid"
 cmp "$scratch/consumer.csv" "$scratch/hybrid/run.csv" || refuse "a program that links eomgen::hybrid does not give the table of eomgen run"
 
 echo "-- the headers alone compile where they are included"
-"$cxx" -std=c++20 -fsyntax-only $warnings -I "$prefix/include" -isystem "${EIGEN:-/usr/include/eigen3}" -I "$scratch/hybrid" \
+"$cxx" -std=c++20 -fsyntax-only "${warnings[@]}" -I "$prefix/include" -isystem "${EIGEN:-/usr/include/eigen3}" -I "$scratch/hybrid" \
   "$source/examples/hybrid/rough_sphere.cpp" || refuse "the headers of the runtime without its library"
 
 echo "-- headers of another version do not link with the compiled runtime"
