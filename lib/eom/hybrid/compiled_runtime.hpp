@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Where the code of runs is compiled. Without EOM_COMPILED_RUNTIME each file that includes run.hpp, stepwise_run.hpp or
-// external_steps.hpp compiles it (about a minute). With it these headers only declare, and the program links the library
-// eomgen_hybrid (CMake: eomgen::hybrid, which defines the macro). In: the types that a program and the library share.
-// Out: RuntimeLayout, which a program and a library of other headers do not share.
+// external_steps.hpp compiles it (about a minute). With it these headers only declare, and the program links the
+// library eomgen_hybrid (CMake: eomgen::hybrid, which defines the macro). In: the types that a program and the library
+// share. Out: RuntimeLayout, which a program and a library of other headers do not share.
 #pragma once
 
 #include <cstddef>
