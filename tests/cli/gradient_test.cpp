@@ -311,7 +311,8 @@ TEST_CASE("gradient: through a contact that changes while another one is closed"
       "model.toml",
       "format = 1\n[parameters]\nm = 2\ng = 9.81\nd = 1\nv = 3\ne = 0.5\nmu = 0.2\n[[particle]]\nname = "
       "\"P\"\nmass = \"m\"\nposition = { cartesian = [\"x\", \"0\", \"z\"] }\n[[constraint]]\nname = \"table\"\n"
-      "holonomic = \"z\"\nholds = \"unilateral\"\nfriction = { static = \"mu\", dynamic = \"mu\" }\n[[constraint]]\nname = \"wall\"\n"
+      "holonomic = \"z\"\nholds = \"unilateral\"\nfriction = { static = \"mu\", dynamic = \"mu\" "
+      "}\n[[constraint]]\nname = \"wall\"\n"
       "holonomic = \"d - x\"\nholds = \"unilateral\"\nrestitution = \"e\"\n[[force]]\ngravity = \"-g*E3\"\n"
       "[scene.default]\nt = [0, 0.6]\ninitial = { x = 0, x_dot = \"v\" }\nrtol = 1e-11\natol = 1e-12\n");
   compare(folder, "model.toml", "x,x_dot", "d,v,e,mu,g", 1e-8);
