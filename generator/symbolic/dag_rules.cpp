@@ -30,7 +30,7 @@ std::optional<Rational> multiple_of_pi(const Dag& dag, Ref a) {
     if (r) return *r / dag.value(node.args[1]);
   }
   if (node.op != Op::mul) return std::nullopt;
-  for (const std::size_t k : {0, 1}) {
+  for (const std::size_t k : {std::size_t{0}, std::size_t{1}}) {
     if (!dag.is_constant(node.args[k])) continue;
     const std::optional<Rational> r = multiple_of_pi(dag, node.args[1 - k]);
     if (r) return *r * dag.value(node.args[k]);

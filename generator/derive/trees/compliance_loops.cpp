@@ -272,7 +272,7 @@ class ComplianceLoops {
 
   /// Copies a row of the result to the buffer.
   void read_row(std::size_t l, std::size_t f, const Range& range, ArrayStep& step) const {
-    for (const std::size_t order : {0, 1}) {
+    for (const std::size_t order : {std::size_t{0}, std::size_t{1}}) {
       for (std::size_t lane = range.from + order; lane < range.to; lane += 2)
         step.before.push_back(
             {entry(links_.joints(l)[f].index, lanes_[lane]), {false, spread_buffer_.entry(row(f), lane)}});
@@ -282,7 +282,7 @@ class ComplianceLoops {
   /// Copies the rows of the buffer to the result, column by column.
   void write_rows() {
     ArrayStep step;
-    for (const std::size_t order : {0, 1}) {
+    for (const std::size_t order : {std::size_t{0}, std::size_t{1}}) {
       for (std::size_t lane = order; lane < lanes_.size(); lane += 2) {
         for (std::size_t i = 0; i < written_.size(); ++i) {
           const auto [coordinate, l] = written_[i];

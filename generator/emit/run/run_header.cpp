@@ -134,7 +134,7 @@ class Statements {
       line(wrapped(fmt::format("{}.{} = {};", of_, member, text(entries)), "      "));
     } else {  // names may contain blanks, where lines must not break
       const std::string all = joined(
-          entries, [this](const Entry& entry) { return in_lines(entry); }, ",\n      ");
+          entries, [](const Entry& entry) { return in_lines(entry); }, ",\n      ");
       line(fmt::format("{}.{} = {{{}}};", of_, member, all));
     }
   }
