@@ -145,7 +145,7 @@ std::function<std::string(const std::string&)> ContactTable::gap_of_particle(con
            "write on = \"ground\", a plane or an obstacle; pairs are spheres = [..] or shapes = { .. }");
     return [size](const std::string& name) { return fmt::format("dot({}, E3) - {}", name, size); };
   }
-  if (on.is(Value::Kind::table) && on.find("normal") != nullptr) {
+  if (on.is(Value::Kind::table) && is_on_plane() && (on.find("normal") != nullptr || on.find("point") != nullptr)) {
     const Value* point = on.find("point");
     if (point == nullptr) fail(on, "has a plane without a point", "add point = \"..\", a point of the plane");
     for (const Entry& entry : on.entries) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Gradients of outputs at the end of a run by the variational equations, for runs without adjoint equations: forces of
-// contacts that are solved for at every evaluation. The cost grows with the number of directions. In: as
-// integrate_gradients(). Out: the state at the end, then the value of each output and its slopes.
+// contacts are solved for at every evaluation, or a state alone leaves the mode of a contact. The cost grows with the
+// number of directions. In: as integrate_gradients(). Out: the state at the end, then the value of each output and its
+// slopes.
 #pragma once
 
 #include <string>

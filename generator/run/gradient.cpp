@@ -387,25 +387,26 @@ Gradients integrate_gradients(const RunRequest& request, const RunResult& motion
   const eom::Options options = derivative_options(request, result.solver);
   std::optional<GradientRun> backward;
   std::optional<ForwardGradientRun> forward;
-  const auto run = [&](const eom::Options& given) { return backward ? (*backward)(given) : (*forward)(given); };
-  const auto go_forward = [&](const std::string& reason) {
-    backward.reset();
-    forward.emplace(request, motion, result.solver, wanted.directions, wanted.outputs);
-    result.method = GradientMethod::variational;
-    result.reason = reason;
-  };
+  std::string reason;  // why not the adjoint equations
   if (request.code.contact_set.empty())
     backward.emplace(request, motion, result.solver, wanted);
   else
-    go_forward("contact forces are solved for at every evaluation");
+    reason = "contact forces are solved for at every evaluation";
+  // The tighter run of the estimate may be the first that cannot go backward.
+  const auto run = [&](const eom::Options& given) {
+    try {
+      if (backward) return (*backward)(given);
+    } catch (const NoAdjointEquations& none) {
+      backward.reset();
+      reason = none.reason;
+    }
+    if (!forward) forward.emplace(request, motion, result.solver, wanted.directions, wanted.outputs);
+    return (*forward)(given);
+  };
   const auto start = std::chrono::steady_clock::now();
-  eom::Result end;
-  try {
-    end = run(options);
-  } catch (const NoAdjointEquations& none) {
-    go_forward(none.reason);
-    end = run(options);
-  }
+  const eom::Result end = run(options);
+  result.method = backward ? GradientMethod::adjoint : GradientMethod::variational;
+  result.reason = reason;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.outcome = end.outcome;
   result.statistics = end.statistics;

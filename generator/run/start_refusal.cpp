@@ -182,8 +182,8 @@ void refuse_start(const StartProblem& problem, StartRows& rows, std::uint8_t ord
   const bool approaches = constraint.unilateral && order == 1 && off < 0;
   const std::string remedy =
       approaches
-          ? "the contact approaches at the start, and no impact is at the start: begin above its surface, however "
-            "little, or with a speed that does not approach"
+          ? "the contact approaches at the start: begin above its surface, however little, or with a speed that does "
+            "not approach"
       : !others.empty()
           ? fmt::format(
                 "it contradicts {}: no unknown lessens one without the other; leave out or change one of them{}",

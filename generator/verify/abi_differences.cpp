@@ -157,35 +157,35 @@ class FrameComparison {
     const Real same = cln::cl_RA(1) / 100000000;
     const Real least = axes_difference(place, 0);
     const model::Body* carrier = nullptr;
-    Real nearest = least, least_motion = 0;
+    Real nearest = least;
+    double least_motion = 0;
     for (const model::Body& one : model_.bodies) {
       const Real difference = axes_difference(place, one.frame);
-      if (difference >= least) continue;
-      const Real motion = motion_within(place, one);
-      const bool alike = cln::abs(difference - nearest) <= same;
-      if (carrier != nullptr && (alike ? motion >= least_motion : difference > nearest)) continue;
+      if (difference >= least || (carrier != nullptr && difference > nearest + same)) continue;
+      const double motion = motion_within(place, one);
+      if (carrier != nullptr && difference >= nearest - same && motion >= least_motion) continue;
       nearest = difference, least_motion = motion;
       carrier = &one;
     }
     if (carrier == nullptr) return 0;
-    result_[jacobians].largest = std::max(result_[jacobians].largest, cln::double_approx(least_motion));
+    result_[jacobians].largest = std::max(result_[jacobians].largest, least_motion);
     return carrier->frame;
   }
 
   /// How far dr/dq_i - dr_B/dq_i is from w_i x (r - r_B), relative to the sizes of their terms: 0 for a point that is
   /// fixed in the body.
-  Real motion_within(std::uint32_t p, const model::Body& body) {
+  double motion_within(std::uint32_t p, const model::Body& body) {
     const PlaceMotion &point = place(p), &centre = place(body.place);
     Components arm;
     for (std::size_t c = 0; c < 3; ++c) arm[c] = point.position[c] - centre.position[c];
-    Real largest = 0;
+    double largest = 0;
     for (const std::uint32_t i : free_) {
       const Components& turn = axes(body.frame).rotation[i];
       const Components expected = cross_product(turn, arm);
       const Real size = linear_.tangent[i] + angular_.tangent[i] * linear_.value;
       for (std::size_t c = 0; c < 3; ++c)
-        largest = cln::max(largest,
-                           Real(relative_difference(point.tangent[i][c] - centre.tangent[i][c] - expected[c], size)));
+        largest =
+            std::max(largest, relative_difference(point.tangent[i][c] - centre.tangent[i][c] - expected[c], size));
     }
     return largest;
   }

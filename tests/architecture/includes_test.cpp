@@ -30,6 +30,15 @@ const std::set<std::string> products = {
 /// Libraries by the prefix of their headers' paths, with the folders of generator/ that may include them.
 const std::vector<std::pair<std::string, std::set<std::string>>> libraries = {
     {"ginac/", {"reading"}},
+    {"cln/",
+     {"analysis", "cli", "emit", "eomgen", "jit", "linear", "mechanics", "model", "numeric", "oracle", "pipeline",
+      "print", "program", "reading", "reference", "run", "stress", "symbolic", "verify"}},
+    {"eom/",
+     {"analysis", "bench", "cli", "emit", "eomgen", "import", "jit", "linear", "mechanics", "model", "pipeline",
+      "print", "program", "run", "stress", "symbolic", "system", "verify"}},
+    {"fmt/", {"analysis", "bench",     "cli",   "derive", "emit",     "eomgen", "error.cpp",
+              "import",   "mechanics", "model", "oracle", "pipeline", "print",  "program",
+              "reading",  "reference", "run",   "stress", "symbolic", "verify"}},
     {"Eigen/", {"analysis", "linear", "numeric", "pipeline", "run", "stress"}},
     {"nlohmann/", {"cli", "emit", "pipeline"}},
     {"CLI/", {"cli"}},
