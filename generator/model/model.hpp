@@ -74,6 +74,7 @@ struct Coordinate {
   std::string tex;
   NodeId lower = no_node, upper = no_node;  // open interval of the chart, if it has one
   Span span;
+  bool is_along_rim = false;  // the angle of the nearest point of a rim: it may start anywhere
 };
 struct Definition {
   std::string name;

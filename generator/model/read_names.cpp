@@ -67,6 +67,7 @@ void NamesReader::read_coordinate(const Entry& entry) {
     check_keys(entry.value, {fmt::format("the coordinate {}", what), {"unit", "tex", "range", "armature"}});
     unit = entry.value.find("unit");
     coordinate.tex = tex_of(entry.value, what);
+    coordinate.is_along_rim = entry.value.generated;
     if (entry.value.find("range") != nullptr) coordinates_with_range_.insert(index);
   }
   if (unit == nullptr) return;

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "run/expression_tables.hpp"
+#include "run/massless_coordinates.hpp"
 #include "symbolic/calculus.hpp"
 
 namespace eomgen::run {
@@ -119,9 +120,13 @@ JumpFunctions jump_functions(const system::EquationSystem& s) {
     result.functions.push_back({what, name, constraint});
   };
   add(s.potential, Quantity::potential);
-  for (std::size_t k = 0; k < s.psi.size(); ++k) add(s.psi[k], Quantity::psi, "", k);
-  for (std::size_t k = 0; k < s.A.size(); ++k) add(s.A[k], Quantity::row, "", k / s.free.size());
-  for (std::size_t k = 0; k < s.b.size(); ++k) add(s.b[k], Quantity::rate, "", k);
+  const MasslessJumps may_jump = massless_jumps(s);
+  for (std::size_t k = 0; k < s.psi.size(); ++k)
+    if (!may_jump.position[k]) add(s.psi[k], Quantity::psi, "", k);
+  for (std::size_t k = 0; k < s.A.size(); ++k)
+    if (!may_jump.velocity[k / s.free.size()]) add(s.A[k], Quantity::row, "", k / s.free.size());
+  for (std::size_t k = 0; k < s.b.size(); ++k)
+    if (!may_jump.velocity[k]) add(s.b[k], Quantity::rate, "", k);
   for (const system::Output& output : s.outputs) {
     using system::OutputKind;
     if (output.kind == OutputKind::coordinate || output.kind == OutputKind::position)

@@ -17,7 +17,7 @@
 #include "run/bind.hpp"
 #include "run/monitored_functions.hpp"
 #include "run/parameters.hpp"
-#include "run/start.hpp"
+#include "run/rim_start.hpp"
 #include "symbolic/evaluate.hpp"
 
 namespace eomgen::run {
@@ -137,6 +137,8 @@ void resolve_clock(const Mechanics& m, const system::EquationSystem& system, con
 // The equations do not hold for a start outside its chart.
 void resolve_ranges(const Mechanics& m, SceneEvaluator& value, Scene& result) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
+  result.lower.clear();
+  result.upper.clear();
   for (const model::Coordinate& c : m.model->coordinates) {
     result.lower.push_back(c.lower == model::no_node ? -infinity : value.number(c.lower, "the lower end of a range"));
     result.upper.push_back(c.upper == model::no_node ? infinity : value.number(c.upper, "the upper end of a range"));
@@ -384,7 +386,8 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   result.time = table.time;
   problem.t0 =
       eom::hybrid::time_behind_start(result.time, result.parameters, input_signals(result), result.t0, result.t1);
-  solve_start(problem);
+  resolve_ranges(m, value, result);
+  solve_start_on_rims(problem, result.lower, result.upper);
   for (std::size_t i = 0; i < result.parameters.size(); ++i) {
     if (const auto& start_of = m.model->parameters[i].initial_value_of) result.parameters[i] = problem.q[*start_of];
   }

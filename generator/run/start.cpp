@@ -11,6 +11,7 @@
 
 #include "derive/imposition.hpp"
 #include "numeric/dense.hpp"
+#include "run/massless_coordinates.hpp"
 #include "run/scene.hpp"
 #include "run/start_refusal.hpp"
 #include "run/start_rows.hpp"
@@ -310,7 +311,8 @@ class StartSolver {
   }
 
   /// If several choices satisfy the constraints (as for rolling without a given spin about the normal), solves for the
-  /// unknowns that the constraints depend on most strongly. The others stay 0 or keep their guess; this is reported.
+  /// unknowns that the constraints depend on most strongly, first for those without inertia, such as the place of a
+  /// nearest point. The others stay 0 or keep their guess; this is reported.
   void choose(std::uint8_t order, const std::vector<std::size_t>& free) {
     VectorXd residual;
     MatrixXd A;
@@ -320,7 +322,7 @@ class StartSolver {
     std::vector<bool> first;
     for (std::size_t i = 0; i < free.size(); ++i) {
       columns.col(static_cast<Eigen::Index>(i)) = A.col(static_cast<Eigen::Index>(free[i]));
-      first.push_back(may_move({s_.free[free[i]], order}));
+      first.push_back(may_move({s_.free[free[i]], order}) || is_massless(s_, free[i]));
     }
     std::vector<std::size_t> chosen;
     std::string open;
