@@ -129,6 +129,7 @@ std::vector<Nearest> nearest_to_cone(const Core& a, const std::string& angle, co
     const std::string w = cone.radial(a.centre, name), h = name(cone.height(a.centre));
     const std::string tip = name(fmt::format("{} - {}", a.centre, apex));
     const auto beside_tip = [&](const std::string& at_tip, const std::string& at_mantle) {
+      if (a.on_rim) return name(at_mantle);
       return name(fmt::format("if(norm({})*sin({}) + {}*cos({}) < 0, {}, {})", w, angle, h, angle, at_tip, at_mantle));
     };
     const std::string gap =
@@ -156,6 +157,15 @@ std::vector<Nearest> nearest_to_cone(const Core& a, const std::string& angle, co
   const std::string to_p = distance(p), to_q = distance(q);
   const std::string own = name(along(a, fmt::format("if({} < {}, {}, {})", to_p, to_q, s, t)));
   return {by_cores(own, cone.foot(own, a.radius, name), a.radius, "0", name)};
+}
+
+// A plane that is steeper than the mantle cuts the cone: there the rim meets the mantle before the face meets the tip.
+std::string height_below_face(const Core& disk, const std::string& angle, const std::string& apex,
+                              const std::string& axis) {
+  const std::string d = fmt::format("({} - {})", apex, disk.centre), height = fmt::format("dot({}, {})", d, disk.axis);
+  const std::string cosine = fmt::format("dot({}, unit({}))", disk.axis, axis);
+  return fmt::format("if(dot({0}, {0}) - {1}^2 < {2}^2, if({3} > sin({4}), {1}, if({3} < -sin({4}), -{1}, {2})), {2})",
+                     d, height, disk.size, cosine, angle);
 }
 
 }  // namespace eomgen::model

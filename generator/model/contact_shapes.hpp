@@ -20,10 +20,11 @@ namespace eomgen::model {
 struct Core {
   enum class Kind { point, segment, disk };
   Kind kind = Kind::point;
-  std::string centre;  // a position
-  std::string radius;  // of the neighbourhood of the core: "0" for points of bodies and for disks
-  std::string axis;    // a unit vector: along a segment, across a disk
-  std::string size;    // the length of a segment, the radius of a disk
+  std::string centre;   // a position
+  std::string radius;   // of the neighbourhood of the core: "0" for points of bodies and for disks
+  std::string axis;     // a unit vector: along a segment, across a disk
+  std::string size;     // the length of a segment, the radius of a disk
+  bool on_rim = false;  // a point of the rim of a disk, which meets the mantle of a cone and not its tip
 };
 
 /// Names for parts of the expressions, in their order; `inlined`: the parts themselves.
@@ -54,6 +55,11 @@ std::vector<Nearest> nearest_to_cylinder(const Core& a, const std::string& radiu
 /// Outside of an infinite cone of this half angle, which is open along its axis; also about the tip.
 std::vector<Nearest> nearest_to_cone(const Core& a, const std::string& angle, const std::string& apex,
                                      const std::string& axis, Names& name);
+
+/// The height of the tip of this cone below the face of a disk: negative where the tip has passed through the face,
+/// positive while the tip is not in front of the face.
+std::string height_below_face(const Core& disk, const std::string& angle, const std::string& apex,
+                              const std::string& axis);
 
 /// A shape of a body, centred at its centre of mass; axial ones along e3. Its points that are nearest to a plane.
 struct BodyShape {
@@ -132,6 +138,9 @@ struct Obstacle {
   std::vector<const char*> further;
   /// Where a shape is nearest to it. values: of `name`, then of `further`. Null for a surface.
   std::vector<Nearest> (*nearest)(const Core& core, const std::vector<std::string>& values, Names& names);
+  /// Distances that are negative where it has passed through the face of a disk that it touches with its rim; null if
+  /// it cannot.
+  std::vector<std::string> (*through_face)(const Core& disk, const std::vector<std::string>& values) = nullptr;
 };
 
 /// The expression with other expressions for the names x and y.
@@ -177,7 +186,8 @@ inline const std::array<Obstacle, 5>& obstacles() {
        }},
       {"cone",  // of a half angle, touched from outside, open along its axis
        {"apex", "axis"},
-       [](const Core& core, const Values& v, Names& names) { return nearest_to_cone(core, v[0], v[1], v[2], names); }},
+       [](const Core& core, const Values& v, Names& names) { return nearest_to_cone(core, v[0], v[1], v[2], names); },
+       [](const Core& disk, const Values& v) -> Values { return {height_below_face(disk, v[0], v[1], v[2])}; }},
       {"surface", {}, nullptr},  // z = f(x, y), touched from above; the gap of points is measured along E3
   }};
   return all;

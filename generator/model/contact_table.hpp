@@ -104,7 +104,9 @@ class ContactTable {
   void stop_beside(const Value& at, const std::string& name, const Core& ball, const std::string& f);
   void ball_on_surface(const Value& at, const std::string& suffix, const Core& ball, const std::string& f);
   void capsule_on_surface(const Value& at, const Core& capsule, const std::string& f);
-  void rim(const Value& at, const Core& disk, const Approach& approach, const std::vector<Value>& at_rest);
+  /// through_face: distances that are negative where the other shape has passed through the face of the disk.
+  void rim(const Value& at, const Core& disk, const Approach& approach, const std::vector<Value>& at_rest,
+           const std::vector<std::string>& through_face);
   void rim_on_surface(const Value& at, const Core& disk, const std::string& f);
 
   /// The only entry of a table that names one of the kinds of `all`. further: other keys of that kind.

@@ -12,6 +12,21 @@
 #include "model/syntax.hpp"
 
 namespace eomgen::model {
+namespace {
+
+/// The gaps between a core and the half spheres at both ends of a capsule; none for other shapes.
+std::vector<std::string> gaps_of_ends(const Core& core, const Core& capsule) {
+  std::vector<std::string> result;
+  if (capsule.kind != Core::Kind::segment) return result;
+  for (const char* share : {"1/2", "(-1/2)"}) {
+    const std::string centre = fmt::format("({} + {}*{}*{})", capsule.centre, share, capsule.size, capsule.axis);
+    Names inlined{true};
+    result.push_back(nearest_of_cores(core, {Core::Kind::point, centre, capsule.radius, "", ""}, inlined).at(0).gap);
+  }
+  return result;
+}
+
+}  // namespace
 
 const Value& ContactTable::body() const {
   const Value& name = require("body", "add body = \"B\", which touches");
@@ -56,6 +71,7 @@ void ContactTable::add_point(const Value& at, const std::string& suffix, const s
 void ContactTable::add_core(const Value& at, const std::string& suffix, const Core& core) {
   const Value& on = this->on();
   std::vector<Value> at_rest;
+  std::vector<std::string> through_face;
   Approach approach;
   std::string what;
   if (on.is(Value::Kind::text)) {
@@ -66,9 +82,9 @@ void ContactTable::add_core(const Value& at, const std::string& suffix, const Co
         return nearest_to_hollow(a, centre, size, names);
       };
     } else {
-      approach = [other = core_of(shape, on.text)](const Core& a, Names& names) {
-        return nearest_of_cores(a, other, names);
-      };
+      const Core other = core_of(shape, on.text);
+      approach = [other](const Core& a, Names& names) { return nearest_of_cores(a, other, names); };
+      if (core.kind == Core::Kind::disk) through_face = gaps_of_ends(core, other);
     }
   } else {
     if (const Value* shape = table_.find("shape_b")) fail(*shape, "gives shape_b, and 'on' is no body", "remove it");
@@ -78,12 +94,13 @@ void ContactTable::add_core(const Value& at, const std::string& suffix, const Co
     if (kind.nearest == nullptr) return add_on_surface(at, suffix, core, values[0]);
     for (const std::string& value : values) at_rest.push_back(text_value(on, value));
     approach = [&kind, values](const Core& a, Names& names) { return kind.nearest(a, values, names); };
+    if (core.kind == Core::Kind::disk && kind.through_face != nullptr) through_face = kind.through_face(core, values);
   }
   Names names, unused;
   const std::vector<Nearest> found = approach(core, names);
   const bool has_rim =
       core.kind == Core::Kind::disk && !approach({Core::Kind::point, core.centre, "0", "", ""}, unused).empty();
-  if (found.empty() && has_rim) return rim(at, core, approach, at_rest);
+  if (found.empty() && has_rim) return rim(at, core, approach, at_rest, through_face);
   if (found.empty()) refuse_pair(at, what);
   std::size_t count = 0;
   for (const Nearest& nearest : found)

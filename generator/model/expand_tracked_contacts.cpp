@@ -132,15 +132,19 @@ void ContactTable::capsule_on_surface(const Value& at, const Core& capsule, cons
 }
 
 // The angle of the nearest point of a rim: there the gap has no slope along the rim, and a positive second one.
-void ContactTable::rim(const Value& at, const Core& disk, const Approach& approach, const std::vector<Value>& at_rest) {
+void ContactTable::rim(const Value& at, const Core& disk, const Approach& approach, const std::vector<Value>& at_rest,
+                       const std::vector<std::string>& through_face) {
   const std::string name = name_ + "_1", phi = name + "_phi";
   const auto point = [&](const std::string& cosine, const std::string& sine) {
-    return Core{Core::Kind::point, on_rim(disk, body().text, cosine, sine), "0", "", ""};
+    return Core{Core::Kind::point, on_rim(disk, body().text, cosine, sine), "0", "", "", true};
   };
   const Core nearest = point("cos(" + phi + ")", "sin(" + phi + ")");
-  coordinates_.push_back({phi, at.span, text_value(at, "rad")});
+  Value angle = empty_table(at);
+  angle.generated = true;
+  angle.entries.push_back({"unit", at.span, text_value(at, "rad")});
+  coordinates_.push_back({phi, at.span, std::move(angle)});
   Names inlined{true}, names;
-  std::vector<std::string> gaps;
+  std::vector<std::string> gaps = through_face;
   for (int k = 0; k < 8; ++k)
     gaps.push_back(approach(point(fmt::format("cos({}*pi/4)", k), fmt::format("sin({}*pi/4)", k)), inlined)[0].gap);
   stop_below(at, name_ + "_beside", gaps, fmt::format("(-0.02*{})", disk.size));
@@ -165,7 +169,12 @@ void ContactTable::rim_on_surface(const Value& at, const Core& disk, const std::
     const std::string S = names(foot.position()), n = names(foot.normal()), p = names(point.centre);
     return {{fmt::format("dot({} - {}, {})", p, S, n), n, p, S}};
   };
-  rim(at, disk, approach, {text_value(at, at_position(f, disk.size, disk.size))});
+  std::vector<std::string> heights{height_above(f, disk.centre)};
+  for (int k = 0; k < 8; ++k) {
+    const auto half = [k](const char* function) { return fmt::format("{}({}*pi/4)/2", function, k); };
+    heights.push_back(height_above(f, on_rim(disk, body().text, half("cos"), half("sin"))));
+  }
+  rim(at, disk, approach, {text_value(at, at_position(f, disk.size, disk.size))}, heights);
 }
 
 }  // namespace eomgen::model

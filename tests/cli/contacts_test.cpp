@@ -144,6 +144,34 @@ TEST_CASE("shapes: a ball that touches a surface at a second place ends the run 
   CHECK_FALSE(contains(wide, "c_1_beside"));
 }
 
+// The disk falls from rest, tilted, above a peak, a tip and the end of a capsule, which its face meets. The start of
+// the place along the rim, and its rate, follow from the attitude.
+TEST_CASE("shapes: what passes through the face of a disk ends the run, after the rim was nearest to a tip or an end") {
+  const Folder folder;
+  const double through = -0.02 * 0.3, c = std::cos(tilt);
+  const auto ends = [&](const std::string& text, double t) {
+    CAPTURE(text);
+    folder.write("model.toml", text);
+    const Json run = document(folder, {"run", "model.toml"});
+    CHECK(run["outcome"] == "stopped_by_event");
+    REQUIRE(run["events"].size() == 1);
+    CHECK(run["events"][0]["name"] == "c_beside");
+    CHECK(run["events"][0]["t"].get<double>() == doctest::Approx(t).epsilon(1e-9));
+    CHECK(run["final"]["q"].get<double>() == doctest::Approx(tilt));
+  };
+  ends(falling("disk = \"R\"", "{ surface = \"0.4*exp(-(x^2 + y^2)/0.003)\" }"),
+       std::sqrt(2 * (start - 0.4 - through) / g));
+  ends(falling("disk = \"R\"", "{ cone = \"0.3\", apex = \"0*E1\", axis = \"-E3\" }"),
+       std::sqrt(2 * (start - through / c) / g));
+  const double height = 1, length = 0.4, radius = 0.03, speed = 3;
+  const std::string with_capsule = replaced(
+      replaced(falling("disk = \"R\"", "\"C\"\nshape_b = { capsule = [0.03, 0.4] }"), "[[force]]",
+               "[[body]]\nname = \"C\"\nmass = \"m\"\ninertia = { rod = 0.4 }\nposition = { cartesian = [\"0\", \"0\", "
+               "\"s\"] }\nrotation = { axis = \"E1\", angle = \"w\" }\n[[force]]"),
+      "initial = {", "initial = { s = 1, s_dot = 3,");
+  ends(with_capsule, (start - height - length / 2 - (radius + through) / c) / speed);
+}
+
 TEST_CASE("shapes: unknown kinds, wrong sizes and missing keys are refused with a remedy") {
   refused(falling("torus = \"R\""), "names no shape");
   refused(falling("capsule = \"R\""), "gives the sizes of the capsule as");

@@ -124,12 +124,6 @@ struct PageCase {
   bool sphere = false;      // its particle is on a sphere about the origin
 };
 
-std::string replaced(std::string text, const std::string& what, const std::string& with) {
-  const std::size_t at = text.find(what);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, what.size(), with);
-}
-
 std::string source(const std::string& path) {
   std::ifstream file(eomgen::test::source_folder() + "/" + path);
   std::stringstream text;

@@ -61,5 +61,7 @@ Table read_table(const std::string& text);
 
 std::vector<std::string> shipped_models();  // names, sorted
 bool contains(const std::string& text, const std::string& part);
+/// With its first `what` replaced; a doctest failure if there is none.
+std::string replaced(std::string text, const std::string& what, const std::string& with);
 
 }  // namespace eomgen::test
