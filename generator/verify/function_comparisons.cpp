@@ -20,6 +20,7 @@
 #include "verify/abi_differences.hpp"
 #include "verify/central_differences.hpp"
 #include "verify/derivative_comparisons.hpp"
+#include "verify/series_comparison.hpp"
 
 namespace eomgen::verify {
 namespace {
@@ -388,42 +389,10 @@ class FunctionComparisons {
     note("rates of momenta", "momenta along the path", largest);
   }
 
-  /// The polynomial X of order K satisfies X' = f(X) except for terms of h^K: h is so small that they are below the
-  /// compared digits.
   void taylor(const AbiResults&) {
-    constexpr int order = 4, beyond = 20;
-    const int exponent = step_digits() + beyond, more = order * exponent + 60;
-    const Precision precision(more);
-    const Real h = precision.round(power_of_ten(-exponent));
-    AbiArguments at = with_digits(at_, precision);
-    at.order = order;
-    const std::optional<AbiResults> c = program_.call("taylor", at, more);
-    if (!c) return;
-    const std::size_t n = at_.x.size();
-    std::vector<Real> x(n, Real(0)), rate(n, Real(0));
-    Real last = 0, most = 0;
-    for (std::size_t k = order + 1; k-- > 0;) {
-      for (std::size_t i = 0; i < n; ++i) {
-        const Real& coefficient = (*c)[0][i + n * k];
-        x[i] = x[i] * h + coefficient;
-        if (k > 0) rate[i] = rate[i] * h + Real(static_cast<long>(k)) * coefficient;
-        if (k == order) last = cln::max(last, cln::abs(coefficient));
-        if (k > 0) most = cln::max(most, cln::abs(coefficient));
-      }
-    }
-    at.x = x;
-    at.t = at.t + h;
-    const std::optional<AbiResults> rhs = program_.call("rhs", at, more);
-    if (!rhs) return;
-    // If the last coefficients vanish, the rounding errors of the others and of the sums in dx remain.
-    const AbiResults summed = sizes("rhs", *rhs);
-    if (summed.empty()) return;
-    const Real size = last * order * cln::expt(h, order - 1) + most * power_of_ten(exponent - more);
-    double largest = 0;
-    for (std::size_t i = 0; i < n; ++i)
-      largest = std::max(
-          largest, relative_difference(rate[i] - (*rhs)[0][i], size + summed[0][i] * power_of_ten(exponent - more)));
-    note("taylor", "dx along the series", largest);
+    const auto sizes_of_rhs = [this](const AbiResults& rhs) { return sizes("rhs", rhs); };
+    if (const auto largest = series_difference(program_, at_, step_digits(), sizes_of_rhs))
+      note("taylor", "dx along the series", *largest);
   }
 
   const ProgramForm& program_;
