@@ -21,16 +21,11 @@ struct Jet::Dual {
 namespace {
 
 constexpr long most_bits_of_angle = 1 << 16;  // before its point
+constexpr long most_exponent = 10000000;      // of an exponential; those below its negative count as 0
 
 const Jet& zero_jet() {
   static const Jet zero;
   return zero;
-}
-
-/// Whether exp(x) is below the exponent range of CLN's floats and counts as 0.
-bool is_faint(const Real& exponent) {
-  static const cln::cl_I faintest = -cln::expt_pos(cln::cl_I(10), 18);
-  return exponent < faintest;
 }
 
 bool is_integer(const Real& x) { return cln:: instanceof (x, cln::cl_I_ring); }
@@ -186,6 +181,7 @@ std::pair<Jet, Jet> sin_cos(const Jet& x, const Precision& p) {
 
 std::pair<Jet, Jet> sinh_cosh(const Jet& x, const Precision& p) {
   if (x.level() == 0) {
+    require(cln::abs(x.real()) <= most_exponent, "an exponential is beyond all bounds");
     const cln::cosh_sinh_t both = cln::cosh_sinh(p.round(x.real()));
     return {Jet(both.sinh), Jet(both.cosh)};
   }
@@ -226,12 +222,16 @@ Jet atan2(const Jet& y, const Jet& x, const Precision& p) {
 }
 
 Jet tanh(const Jet& x, const Precision& p) {
+  if (cln::abs(x.real()) > most_exponent) return cln::minusp(x.real()) ? Jet(-1) : Jet(1);  // its slope counts as 0
   const auto [s, c] = sinh_cosh(x, p);
   return s / c;
 }
 
 Jet exp(const Jet& x, const Precision& p) {
-  if (x.level() == 0) return is_faint(x.real()) ? Jet() : Jet(cln::exp(p.round(x.real())));
+  if (x.level() == 0) {
+    require(x.real() <= most_exponent, "an exponential is beyond all bounds");
+    return x.real() < -most_exponent ? Jet() : Jet(cln::exp(p.round(x.real())));
+  }
   const Jet e = exp(x.value(x.level()), p);
   return apply_chain_rule(x, e, e);
 }

@@ -17,8 +17,11 @@ namespace eomgen::symbolic {
 
 /// Message of the std::domain_error of a division by zero.
 inline constexpr const char* division_by_zero = "division by zero";
-/// Message of the std::domain_error of an exponential above the exponent range of CLN's floats.
-inline constexpr const char* exponent_too_large = "the exponential of a number above 1e18";
+/// Message of the std::domain_error of an exponential above most_exponent.
+inline constexpr const char* exponent_too_large = "the exponential of a number above 10^7";
+/// The largest argument of an exponential: far above those of binary64 (709), as narrow parts such as 1/cosh(x/1e-6)
+/// have it. Its value as a rational has 2 MB: exponentials of exponentials would take all memory and time.
+inline constexpr long most_exponent = 10000000;
 
 /// Arithmetic with CLN floats of one format. Exact rationals are rounded once. Throws std::domain_error outside the
 /// real domain of a function and for a division by zero.
@@ -69,19 +72,14 @@ struct ClnArithmetic {
     require(cln::float_exponent(x) <= most_bits, "an angle of more than 65536 bits before its point");
     return x;
   }
-  /// 0 if the result is below the exponent range of CLN's floats.
+  /// 0 for arguments below -most_exponent.
   static cln::cl_R exp(const cln::cl_F& x) {
-    if (x < -largest_exponent()) return 0;
+    if (x < cln::cl_R(-most_exponent)) return 0;
     return cln::exp(exponent(x));
   }
-  /// The argument of an exponential, within the exponent range of CLN's floats.
   static const cln::cl_F& exponent(const cln::cl_F& x) {
-    require(cln::abs(x) <= largest_exponent(), exponent_too_large);
+    require(cln::abs(x) <= cln::cl_R(most_exponent), exponent_too_large);
     return x;
-  }
-  static const cln::cl_I& largest_exponent() {
-    static const cln::cl_I value = cln::expt_pos(cln::cl_I(10), 18);
-    return value;
   }
   cln::cl_R arcsine(const cln::cl_F& x) const {
     require(cln::abs(x) <= cln::cl_R(1), "asin or acos outside [-1, 1]");

@@ -98,9 +98,11 @@ TEST_CASE("functions in binary64 and in many digits agree") {
   }
 }
 
-TEST_CASE("results below the range of CLN's floats are 0") {
+TEST_CASE("exponentials of large numbers are 0, or have no value") {
   CHECK(cln::zerop(precise.call(Op::exp, -cln::expt(Rational(10), 300))));
-  CHECK(cln::plusp(precise.call(Op::exp, -cln::expt(Rational(10), 17))));
+  CHECK(cln::plusp(precise.call(Op::exp, -cln::expt(Rational(10), 6))));
+  CHECK_THROWS_AS(precise.call(Op::exp, cln::expt(Rational(10), 8)), std::domain_error);
+  CHECK(precise.call(Op::tanh, cln::expt(Rational(10), 8)) == 1);
 }
 
 TEST_CASE("angles whose multiple of pi would fill the memory have no value") {
