@@ -182,10 +182,31 @@ class Run {
     stepper_.accept(moved);
     ++steps_;
     if (!continues) return end(Outcome::stopped_by_event, "stopped by the observer at t = " + printed(t_));
+    if (adaptive() && (steps_ & (steps_ - 1)) == 0 && stagnates())
+      return end(Outcome::step_too_small,
+                 "the steps become ever shorter before t = " + printed(t_) + ", as at a singularity of the equations,");
     const double* x = stepper_.x0();
     if (std::any_of(x, x + stepper_.size(), [](double value) { return std::abs(value) > divergence_bound; }))
       return end(Outcome::diverged, "a component of the state exceeds 1e150 at t = " + printed(t_));
     return true;
+  }
+
+  /// Whether a run comes ever nearer to a time that it does not reach, by steps that shrink slower than their distance
+  /// from it. Called at each doubling of the number of steps: the mean step has halved at each of the last ones, and
+  /// the rest would take too many.
+  bool stagnates() {
+    constexpr std::size_t first = 1024;
+    constexpr int most_halvings = 4;
+    constexpr double most_steps = 1e8;
+    if (steps_ < first) {
+      doubled_at_ = t_;
+      return false;
+    }
+    const double mean = std::abs(t_ - doubled_at_) / (0.5 * static_cast<double>(steps_));
+    halvings_ = mean < 0.5 * mean_step_ ? halvings_ + 1 : 0;
+    mean_step_ = mean;
+    doubled_at_ = t_;
+    return halvings_ >= most_halvings && std::abs(t_end_ - t_) > most_steps * mean;
   }
 
   bool reject(double h, double error) {
@@ -295,6 +316,8 @@ class Run {
   double direction_;
   double h_ = 0;  // size of the next trial step
   double fixed_steps_ = 0;
+  double doubled_at_ = 0, mean_step_ = 0;  // of stagnates()
+  int halvings_ = 0;
   std::size_t steps_ = 0;
   std::size_t rejected_ = 0;
   Outcome outcome_ = Outcome::done;
