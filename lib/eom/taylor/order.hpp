@@ -117,7 +117,11 @@ class OrderControl {
       const double of = term(i, k), part = of == 0 ? 0 : of * weight(i);
       sum += part * part;
     }
-    return 0.5 * std::log2(sum / static_cast<double>(components_));
+    if (std::isfinite(sum)) return 0.5 * std::log2(sum / static_cast<double>(components_));
+    double largest = 0;  // the squares overflow
+    for (std::size_t i = 0; i < components_; ++i)
+      if (term(i, k) != 0) largest = std::max(largest, std::log2(std::abs(term(i, k))) + std::log2(weight(i)));
+    return largest;
   }
 
   std::size_t components_;

@@ -139,13 +139,28 @@ class Series : public StepEnds {
   int expand(double t, const double* x, double* f, At& at, int terms) {
     ++counts_.rhs_evaluations;
     at.order = 0;
-    if (const int code = system_.taylor(system_.self, t, x, terms, at.c); code != 0) return code;
-    at.order = terms;
+    // Coefficients grow by 1/radius per order: on a fast time scale those of a high order overflow.
+    int code = system_.taylor(system_.self, t, x, terms, at.c);
+    while (code == code_not_finite && terms > control_.lowest())
+      code = system_.taylor(system_.self, t, x, --terms, at.c);
+    if (code != 0) return code;
+    at.order = largest_finite_order(at, terms);
     std::copy_n(at.c + s_, s_, f);
     if (s_ == n_) return 0;
-    const int code = evaluate(t, x, scratch_);
+    code = evaluate(t, x, scratch_);
     std::copy(scratch_ + s_, scratch_ + n_, f + s_);
     return code;
+  }
+
+  /// The largest order whose coefficients, times the order, do not overflow.
+  int largest_finite_order(const At& at, int terms) const {
+    constexpr double largest = std::numeric_limits<double>::max() / 1024;
+    const auto is_finite = [&](int order) {
+      const double* const term = at.c + static_cast<std::size_t>(order) * s_;
+      return std::all_of(term, term + s_, [](double c) { return std::abs(c) < largest; });
+    };
+    while (terms > control_.lowest() && !is_finite(terms)) --terms;
+    return terms;
   }
 
   /// Measures the last terms for a state that changes by about `move` times its rate, and the change of the next order.
