@@ -141,6 +141,7 @@ struct Obstacle {
   /// Distances that are negative where it has passed through the face of a disk that it touches with its rim; null if
   /// it cannot.
   std::vector<std::string> (*through_face)(const Core& disk, const std::vector<std::string>& values) = nullptr;
+  bool is_round = true;  // its size is a radius
 };
 
 /// The expression with other expressions for the names x and y.
@@ -187,8 +188,10 @@ inline const std::array<Obstacle, 5>& obstacles() {
       {"cone",  // of a half angle, touched from outside, open along its axis
        {"apex", "axis"},
        [](const Core& core, const Values& v, Names& names) { return nearest_to_cone(core, v[0], v[1], v[2], names); },
-       [](const Core& disk, const Values& v) -> Values { return {height_below_face(disk, v[0], v[1], v[2])}; }},
-      {"surface", {}, nullptr},  // z = f(x, y), touched from above; the gap of points is measured along E3
+       [](const Core& disk, const Values& v) -> Values { return {height_below_face(disk, v[0], v[1], v[2])}; },
+       false},
+      {"surface", {}, nullptr, nullptr, false},  // z = f(x, y), touched from above; the gap of points is measured along
+                                                 // E3
   }};
   return all;
 }

@@ -17,6 +17,7 @@ namespace eomgen::model {
 /// The sections that contacts become.
 struct Sections {
   std::vector<Value> constraints, points, events;
+  std::vector<Value> lengths;  // of shapes, which must not be negative
   std::vector<Entry> coordinates;
 };
 
@@ -33,6 +34,7 @@ class ContactTable {
         constraints_(sections.constraints),
         points_(sections.points),
         events_(sections.events),
+        lengths_(sections.lengths),
         coordinates_(sections.coordinates) {}
   void expand();
 
@@ -49,6 +51,8 @@ class ContactTable {
   void require_text(const Value& value, const std::string& what) const;
   /// An expression, as written, in parentheses. A unit behind it, as in "2 m", stands in brackets.
   std::string expression(const Value& value, const std::string& what) const;
+  /// The same of a length of a shape, which must not be negative.
+  std::string length(const Value& value, const std::string& what) const;
   /// The same of a vector, which may be three components.
   std::string vector(const Value& value, const std::string& what) const;
   const std::vector<Value>& list(const Value& value, const std::string& what) const;
@@ -128,6 +132,7 @@ class ContactTable {
   std::vector<Value>& constraints_;
   std::vector<Value>& points_;
   std::vector<Value>& events_;
+  std::vector<Value>& lengths_;
   std::vector<Entry>& coordinates_;
   std::string name_;
 };

@@ -78,7 +78,7 @@ void ContactTable::add_core(const Value& at, const std::string& suffix, const Co
     const Value& shape = require("shape_b", "add shape_b = { sphere = \"S\" }, the shape of the body in 'on'");
     what = "the shape in 'shape_b'";
     if (const Value* radius = shape.is(Value::Kind::table) ? shape.find("hollow") : nullptr) {
-      approach = [size = expression(*radius, "the radius"), centre = on.text](const Core& a, Names& names) {
+      approach = [size = length(*radius, "the radius"), centre = on.text](const Core& a, Names& names) {
         return nearest_to_hollow(a, centre, size, names);
       };
     } else {
@@ -164,7 +164,7 @@ void ContactTable::corners(const Value& value) {
     for (std::size_t k = 0; k < 3; ++k) {
       const bool positive = (corner >> (2 - k) & 1) != 0;
       arm += fmt::format("{}{}/2*{}.e{}", positive ? (k == 0 ? "" : " + ") : (k == 0 ? "-" : " - "),
-                         expression(edges[k], "an edge"), name, k + 1);
+                         length(edges[k], "an edge"), name, k + 1);
     }
     add_point(value, std::to_string(corner + 1), arm);
   }
@@ -185,14 +185,14 @@ std::pair<const BodyShape*, std::vector<std::string>> ContactTable::sizes_of(con
   const Value& given = *value.find(kind.name);
   std::vector<std::string> sizes;
   if (kind.sizes.size() == 1) {
-    sizes.push_back(expression(given, fmt::format("the {}", kind.sizes[0])));
+    sizes.push_back(length(given, fmt::format("the {}", kind.sizes[0])));
   } else {
     const std::vector<Value>& items = list(given, fmt::format("the sizes of the {}", kind.name));
     if (items.size() != kind.sizes.size())
       fail(given, fmt::format("gives {} sizes of the {}", items.size(), kind.name),
            fmt::format("write {} = [{}]", kind.name, fmt::join(kind.sizes, ", ")));
     for (std::size_t k = 0; k < items.size(); ++k)
-      sizes.push_back(expression(items[k], fmt::format("the {}", kind.sizes[k])));
+      sizes.push_back(length(items[k], fmt::format("the {}", kind.sizes[k])));
   }
   return {&kind, sizes};
 }
@@ -215,7 +215,9 @@ void ContactTable::shape(const Value& value) {
 }
 
 std::vector<std::string> ContactTable::values_of(const Value& on, const Obstacle& kind) const {
-  std::vector<std::string> values{expression(*on.find(kind.name), fmt::format("the {}", kind.name))};
+  const Value& size = *on.find(kind.name);
+  const std::string what = fmt::format("the {}", kind.name);
+  std::vector<std::string> values{kind.is_round ? length(size, what) : expression(size, what)};
   for (const char* key : kind.further) {
     const Value* further = on.find(key);
     if (further == nullptr) fail(on, fmt::format("has no {}", key), fmt::format("add {} = \"..\"", key));

@@ -94,6 +94,11 @@ std::string ContactTable::expression(const Value& value, const std::string& what
   return "(" + bracket_unit(value.text) + ")";
 }
 
+std::string ContactTable::length(const Value& value, const std::string& what) const {
+  lengths_.push_back(text_value(value, expression(value, what)));
+  return lengths_.back().text;
+}
+
 std::string ContactTable::vector(const Value& value, const std::string& what) const {
   if (!value.is(Value::Kind::array)) return expression(value, what);
   if (value.items.size() != 3)
@@ -129,7 +134,7 @@ void ContactTable::particles(const Value& value) {
   if (names.empty()) fail(value, "has no particles", "write particles = [\"P\", ..]");
   const Value& on = require("on", "add on = \"ground\", a plane { point, normal }, or an obstacle");
   const Value* radius = table_.find("radius");
-  const std::string size = radius == nullptr ? "0" : expression(*radius, "the radius");
+  const std::string size = radius == nullptr ? "0" : length(*radius, "the radius");
   const std::function<std::string(const std::string&)> gap = gap_of_particle(on, radius, size);
   for (const Value& name : names) {
     require_text(name, "a particle");
@@ -173,7 +178,7 @@ std::function<std::string(const std::string&)> ContactTable::gap_of_particle(con
 void ContactTable::spheres(const Value& value) {
   const std::vector<Value>& names = list(value, "the spheres");
   if (names.size() < 2) fail(value, "needs two spheres", "write spheres = [\"A\", \"B\", ..]");
-  const std::string radius = expression(require("radius", "add radius = \"R\", that of each sphere"), "the radius");
+  const std::string radius = length(require("radius", "add radius = \"R\", that of each sphere"), "the radius");
   std::vector<Part> all;
   for (const Value& name : names) {
     require_text(name, "a sphere");
@@ -189,15 +194,15 @@ void ContactTable::capsules(const Value& value) {
   for (const Entry& entry : value.entries) {
     const Value name = text_value(entry.value, entry.key);
     if (!entry.value.is(Value::Kind::array)) {
-      all.push_back({name, {Core::Kind::point, entry.key, expression(entry.value, "the radius"), "", ""}});
+      all.push_back({name, {Core::Kind::point, entry.key, length(entry.value, "the radius"), "", ""}});
       continue;
     }
     if (entry.value.items.size() != 2)
       fail(entry.value, fmt::format("gives {} sizes of {}", entry.value.items.size(), quote(entry.key)),
            "write [radius, length between the centres of the ends], or the radius of a ball alone");
     all.push_back({name,
-                   {Core::Kind::segment, entry.key, expression(entry.value.items[0], "the radius"), entry.key + ".e3",
-                    expression(entry.value.items[1], "the length")}});
+                   {Core::Kind::segment, entry.key, length(entry.value.items[0], "the radius"), entry.key + ".e3",
+                    length(entry.value.items[1], "the length")}});
   }
   pairs(value, all);
 }
@@ -272,10 +277,10 @@ void append(Value& root, const char* section, Span span, std::vector<Value> entr
 
 }  // namespace
 
-void expand_contacts(const Source& source, Value& root) {
+std::vector<Value> expand_contacts(const Source& source, Value& root) {
   const auto found =
       std::find_if(root.entries.begin(), root.entries.end(), [](const Entry& entry) { return entry.key == "contact"; });
-  if (found == root.entries.end()) return;
+  if (found == root.entries.end()) return {};
   if (!found->value.is(Value::Kind::array))
     source.fail(found->span, "[contact] is a list of entries", "write [[contact]] with two brackets, once for each");
   Sections sections;
@@ -290,12 +295,13 @@ void expand_contacts(const Source& source, Value& root) {
   append(root, "constraint", span, std::move(sections.constraints));
   append(root, "point", span, std::move(sections.points));
   append(root, "event", span, std::move(sections.events));
-  if (sections.coordinates.empty()) return;
+  if (sections.coordinates.empty()) return sections.lengths;
   if (root.find("coordinates") == nullptr) root.entries.push_back({"coordinates", span, Value{}});
   for (Entry& entry : root.entries) {
     if (entry.key == "coordinates")
       std::move(sections.coordinates.begin(), sections.coordinates.end(), std::back_inserter(entry.value.entries));
   }
+  return sections.lengths;
 }
 
 }  // namespace eomgen::model

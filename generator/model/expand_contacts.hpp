@@ -4,13 +4,16 @@
 // one another, limits of coordinates.
 #pragma once
 
+#include <vector>
+
 #include "model/document.hpp"
 
 namespace eomgen::model {
 
 inline constexpr std::size_t max_contacts_of_tables = 3000;
 
-/// Throws Error{stage "model"} for a table that is not well formed.
-void expand_contacts(const Source& source, Value& root);
+/// Throws Error{stage "model"} for a table that is not well formed. Returns the lengths of shapes as expressions: they
+/// must not be negative.
+std::vector<Value> expand_contacts(const Source& source, Value& root);
 
 }  // namespace eomgen::model

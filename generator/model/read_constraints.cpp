@@ -169,6 +169,13 @@ void ConstraintsReader::read() {
     if (const Value* friction = table->find("friction"))
       FrictionReader(context_).read_constraint_friction(constraint, *friction);
   }
+  for (const Value& text : context_.contact_lengths) {
+    const TypedNode length =
+        resolver_.value(text, {"a length of a shape in contact", 0, Shape::scalar, dimension_of("m"), ""});
+    if (length.constant && cln::minusp(*length.constant))
+      resolver_.refuse_value(length, text.span, "a length of a shape in contact", "is negative",
+                             "a radius or an edge is 0 or more");
+  }
 }
 
 // Reads rolling = { .. } or sliding = { .. }; returns false for any other constraint.

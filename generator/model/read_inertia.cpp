@@ -113,8 +113,11 @@ std::array<NodeId, 3> InertiaReader::shape_moments(const Body& body, const Entry
     std::map<std::string, TypedNode> local;
     for (std::size_t k = 0; k < known.lengths.size(); ++k) {
       const Value& length = one ? shape.value : shape.value.items[k];
-      local[std::string(known.lengths[k])] =
-          resolver_.value(length, {fmt::format("a length in {}", what), 0, Shape::scalar, dimension_of("m"), ""});
+      const std::string part = fmt::format("a length in {}", what);
+      const TypedNode given = resolver_.value(length, {part, 0, Shape::scalar, dimension_of("m"), ""});
+      if (given.constant && cln::minusp(*given.constant))
+        resolver_.refuse_value(given, length.span, part, "is negative", "a radius or an edge is 0 or more");
+      local[std::string(known.lengths[k])] = given;
     }
     const Value& mass = *frame_sources_[body.frame].table->find("mass");
     local["m"] = resolver_.value(mass, {"a mass", 0, Shape::scalar, dimension_of("kg"), ""});

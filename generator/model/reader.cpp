@@ -276,8 +276,9 @@ class Reader : private SectionReader {
 Model read_model_text(const std::string& text, const std::string& file, const std::string& folder) {
   const Source source(file, text);
   Value root = read_document(source);
-  expand_contacts(source, root);
+  std::vector<Value> lengths = expand_contacts(source, root);
   ReaderContext context(source, root);
+  context.contact_lengths = std::move(lengths);
   context.folder = folder;
   Reader(context).read();
   Model& model = context.model;

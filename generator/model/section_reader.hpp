@@ -80,6 +80,7 @@ struct ReaderContext {
   std::vector<FrameDeclaration> frame_sources;  // per Model::frames
   std::vector<Chain> chains;
   std::vector<ShapeSpec> contact_shapes;  // spheres and disks in contact
+  std::vector<Value> contact_lengths;     // of shapes of [[contact]], as expressions
   std::set<std::uint32_t> coordinates_with_range,
       coordinates_with_unit;             // coordinates whose range or unit [coordinates] states
   std::string folder;                    // of files that the model names; empty: it may name none

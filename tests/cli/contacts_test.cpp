@@ -176,6 +176,8 @@ TEST_CASE("shapes: unknown kinds, wrong sizes and missing keys are refused with 
   refused(falling("torus = \"R\""), "names no shape");
   refused(falling("capsule = \"R\""), "gives the sizes of the capsule as");
   refused(falling("capsule = [\"R\"]"), "gives 1 sizes of the capsule");
+  refused(falling("sphere = -0.1"), "a length of a shape in contact is negative");
+  refused(falling("capsule = [\"R\", \"-L\"]"), "a length of a shape in contact is negative");
   refused(falling("sphere = \"R\"", "\"B\""), "has no shape_b");
   refused(falling("sphere = \"R\"", "\"B\"\nshape_b = { sphere = 1 }"), "cannot touch itself");
   refused(falling("cylinder = [\"R\", \"L\"]", "{ sphere = 1, centre = \"-E3\" }"), "touches planes only");

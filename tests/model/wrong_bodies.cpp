@@ -136,6 +136,8 @@ std::vector<WrongModel> wrong_bodies() {
       {"moments that no body has", top({{"[\"J\", \"J\", \"J\"]", "[1, 5, 2]"}}), "9:29",
        "a principal moment is larger than the other two together, as that of no body",
        "check the values and their units"},
+      {"a negative length", top({{"principal = [\"J\", \"J\", \"J\"]", "sphere = -1"}}), "9:22",
+       "a length in the inertia of 'B' is negative", "a radius or an edge is 0 or more"},
       {"a negative moment", top({{"[\"J\", \"J\", \"J\"]", "[1, -1, 2]"}}), "9:29", "a moment of inertia is negative",
        "it is a sum of masses times squares"},
       {"a negative moment in a parameter", top({{"J = \"2", "J = \"-2"}}), "4:5",
