@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <initializer_list>
 #include <optional>
 
@@ -256,6 +257,8 @@ void require_ends(const SteadyMotions& result, std::size_t most) {
               "there, or begin the search at another start");
 }
 
+constexpr std::chrono::milliseconds most_after_interrupt{50};
+
 void classify_stability(SteadyMotions& result, const SteadyRequest& request, const ConservedQuantities& kept) {
   SteadyProblem& p = result.problem;
   const linear::StabilityTest test(*p.flow, *p.derived->mechanics.dag, kept.energies, kept.momenta);
@@ -264,7 +267,10 @@ void classify_stability(SteadyMotions& result, const SteadyRequest& request, con
     for (const double x : result.search.failure_point) z.push_back(linear::number<Precise>(numeric::exact(x)));
     note_singular_chart(result, z);
   }
+  const auto begin = std::chrono::steady_clock::now();
   for (const linear::FoundPoint& point : result.search.points) {
+    // After Ctrl-C the points that were found are shown, as many as can be classified at once.
+    if (result.search.interrupted && std::chrono::steady_clock::now() - begin > most_after_interrupt) break;
     if (!leaves_contacts_open(p, point.z)) {
       ++result.in_contact;
       continue;
