@@ -18,8 +18,9 @@ std::string text_of_rows(const std::string& text) { return text.substr(text.find
 TEST_CASE("sweep: the lines of a file are points, alone and with a grid") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
-  folder.write("points.csv",
-               "# made elsewhere\r\n k , m\r\n1,1\r\n\r\n2.5, 1e0\n0.1,3");  // the last line has no line break
+  folder.write(
+      "points.csv",
+      "\xef\xbb\xbf# made elsewhere\r\n k , m\r\n1,1\r\n\r\n2.5, 1e0\n0.1,3");  // the last line has no line break
   expect(0, folder, {"sweep", "oscillator.toml", "--points", "points.csv", "--out", "points_sweep.csv"});
   const std::string table = folder.read("points_sweep.csv");
   CHECK(contains(table, "\nrun,k,m,outcome,"));

@@ -81,7 +81,9 @@ PointsFile read_points(const std::string& path) {
   PointsFile file{{}, model::content_hash(text)};
   auto& [names, values] = file.points;
   std::size_t number = 0;
-  for (std::string_view rest = text; !rest.empty();) {
+  std::string_view rest = text;
+  if (rest.starts_with("\xef\xbb\xbf")) rest.remove_prefix(3);  // the byte order mark
+  while (!rest.empty()) {
     const std::size_t end = rest.find('\n');
     const std::vector<std::string> fields = fields_of(rest.substr(0, end));
     rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
