@@ -28,10 +28,12 @@ namespace {
 constexpr std::size_t budget = std::size_t{64} << 20;  // bytes of a trajectory
 
 /// Changes of the state alone, then the directions; all without a scale.
-std::vector<Direction> with_unit_vectors(std::size_t states, const std::vector<Direction>& directions) {
+std::vector<Direction> with_unit_vectors(const std::vector<std::string>& names,
+                                         const std::vector<Direction>& directions) {
+  const std::size_t states = names.size();
   std::vector<Direction> all;
   for (std::size_t i = 0; i < states; ++i) {
-    all.push_back({fmt::format("state {}", i), 1, 0, {}, {}, std::vector<double>(states, 0.0), 0, 0, {}, {}});
+    all.push_back({names[i], 1, 0, {}, {}, std::vector<double>(states, 0.0), 0, 0, {}, {}});
     all.back().dx[i] = 1;
   }
   all.insert(all.end(), directions.begin(), directions.end());
@@ -57,7 +59,7 @@ class GradientRun {
         wanted_(wanted),
         n_(request.state_names.size()),
         count_(wanted.directions.size()),
-        directions_(with_unit_vectors(n_, wanted.directions)),
+        directions_(with_unit_vectors(request.state_names, wanted.directions)),
         jumps_(request, motion, solver, directions_),
         trajectory_(n_, get_method(solver).dense_order, budget),
         x_(n_),

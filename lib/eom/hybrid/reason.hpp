@@ -74,7 +74,7 @@ inline std::string sentence(const Reason& reason) {
       return reason.what + " jumps by " + printed(reason.amount, 6) + " at t = " + printed(reason.t, 15) +
              ", where a branch of `if` or `sign` changes: the equations do not determine the effect of the impulse; "
              "make "
-             "it a steep but smooth step, for example tanh((x - a)/w), or a constraint with unilateral = true";
+             "it a steep but smooth step, for example tanh((x - a)/w), or a constraint that holds = \"unilateral\"";
     case Kind::support_jump_in_contact:
       return "the velocity of a support jumps" + at +
              " while a contact is closed: the equations do not determine the effect of the impulse; make it a motion "
@@ -100,7 +100,7 @@ inline std::string sentence(const Reason& reason) {
              ": set coordinates that satisfy them; velocities are made consistent by impulses of the constraints";
     case Kind::event_chain:
       return "events follow one another without end" + at + ": " + reason.what +
-             "; give them a direction or a condition (`if`), or a contact (unilateral = true) in place of bounces";
+             "; give them a direction or a condition (`if`), or a contact (holds = \"unilateral\") in place of bounces";
     case Kind::slip: return "slip starts and ends" + at + " without progress in time";
     case Kind::chart:
       return "a step just after t = " + printed(reason.t) +
