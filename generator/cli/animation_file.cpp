@@ -234,11 +234,10 @@ void AnimationFile::row(double t, std::span<const double> values) {
 }
 
 std::uint64_t AnimationFile::write(const pipeline::Simulation& simulation, const std::string& title) const {
-  const std::vector<double>& parameters = simulation.scene.parameters;
   mechanics::Mechanics& m = simulation.derived->mechanics;
   const analysis::Animation motion =
-      analysis::animation(drawing_->parts(), analysis::sizes_of(*drawing_, *m.dag, parameters), t_, rows_,
-                          analysis::gravity_direction(m, parameters));
+      analysis::animation(drawing_->parts(), analysis::primitives(*drawing_, *m.dag, simulation.scene, rows_), t_,
+                          rows_, analysis::gravity_direction(m, simulation.scene.parameters));
   if (motion.nodes.empty())
     throw Error("run", {}, "no part has a finite position at every keyframe, so that there is nothing to animate",
                 "end the run before the motion diverges: --t-end", ErrorKind::numerical);

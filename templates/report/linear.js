@@ -42,27 +42,15 @@ function smallestCorrection(W, A, r, g) {
   return solveRows(rows, n + m).subarray(0, n);
 }
 
-// Eigenvalues of a symmetric 3 x 3 matrix and its axes (as rows), by Jacobi's rotations.
-function principalAxes(matrix) {
-  const a = matrix.map((row) => row.slice()), v = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
-  for (let sweep = 0; sweep < 30; ++sweep) {
-    if (Math.abs(a[0][1]) + Math.abs(a[0][2]) + Math.abs(a[1][2]) === 0) break;
-    for (const [p, q] of [[0, 1], [0, 2], [1, 2]]) {
-      if (a[p][q] === 0) continue;
-      const theta = (a[q][q] - a[p][p]) / (2 * a[p][q]), t = (theta >= 0 ? 1 : -1) / (Math.abs(theta) + Math.hypot(theta, 1));
-      const c = 1 / Math.hypot(t, 1), s = t * c;
-      for (let k = 0; k < 3; ++k) [a[k][p], a[k][q]] = [c * a[k][p] - s * a[k][q], s * a[k][p] + c * a[k][q]];
-      for (let k = 0; k < 3; ++k) [a[p][k], a[q][k]] = [c * a[p][k] - s * a[q][k], s * a[p][k] + c * a[q][k]];
-      for (let k = 0; k < 3; ++k) [v[p][k], v[q][k]] = [c * v[p][k] - s * v[q][k], s * v[p][k] + c * v[q][k]];
-    }
-  }
-  return {values: [a[0][0], a[1][1], a[2][2]], axes: v};
-}
-
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const scaled = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
 const plus = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
 const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
 const unit = (a) => scaled(a, 1 / (Math.hypot(a[0], a[1], a[2]) || 1));
-
+const origin = [0, 0, 0], isPoint = (r) => r.every(Number.isFinite);
+// A vector that is perpendicular to a unit vector.
+function acrossTo(normal) {
+  const first = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].find((e) => Math.abs(dot(e, normal)) < 0.8);
+  return minus(first, scaled(normal, dot(first, normal)));
+}

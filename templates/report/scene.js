@@ -1,6 +1,5 @@
 // The drawing of a motion: parts sorted from back to front, then overlays.
-const fixedAxes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]], origin = [0, 0, 0];
-const isPoint = (r) => r.every(Number.isFinite);
+const fixedAxes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 const forceColours = {applied: "#009e73", constraint: "#d55e00", friction: "#cc79a7"};
 
 class Scene {
@@ -17,20 +16,11 @@ class Scene {
     const rows = motion.drawn(), {parts} = this;
     this.motion = motion;
     this.sizes = sizes;
-    // Bodies, and particles with a shape, which keep the fixed axes.
-    this.solids = [...parts.bodies, ...parts.places.map((_, place) => ({place, axes: null})).filter(({place}) => parts.shapes.some((shape) => shape.place === place) && !parts.bodies.some((body) => body.place === place))];
-    this.shapes = this.solids.map((body) => {
-      const drawn = parts.shapes.filter((shape) => shape.place === body.place);
-      if (drawn.length > 0) return drawn.map((shape) => shapeOfModel(shape, sizes)).filter((shape) => shape !== null);
-      const inertia = body.inertia.map((i) => sizes[i]), shape = shapeOfInertia(sizes[body.mass], inertia) || barOfInertia(sizes[body.mass], inertia, this.attached(body, rows[0]));
-      return shape ? [shape] : [];
-    });
+    this.shapes = parts.solids.map(({list}) => list.map((drawn) => solidOf(drawn, parts.polyhedra, sizes)).filter((shape) => shape !== null));
     const sample = rows.filter((_, k) => k % Math.max(1, Math.floor(rows.length / 100)) === 0);
     this.longest = null;
     if (find) this.find(sample, []);
     if (!find && rows.length < 3) return;  // a dragged point: there is no motion
-    this.links = linksOf(this, sample);
-    this.supports = supportsOf(this, sample);
     this.surfaces = parts.surfaces.map((bound) => new Surface(bound, this, sample, source));
     // Includes the supporting surfaces, unless the motion would become small.
     const before = this.camera.size, ends = this.surfaces.flatMap((surface) => surface.find(motion.t[0], rows[0])).map(([r]) => r);
@@ -44,22 +34,12 @@ class Scene {
     const see = (r, radius) => { if (isPoint(r)) balls.push([...r, radius]); };
     for (const y of rows) {
       for (const at of spots) see(this.position(y, at), 0);
-      this.solids.forEach((body, index) => see(this.placeAt(y, body.place), Math.max(0, ...this.shapes[index].map((shape) => shape.radius))));
+      parts.solids.forEach((body, index) => see(this.placeAt(y, body.place), Math.max(0, ...this.shapes[index].map((shape) => shape.radius))));
     }
-    if (parts.places.some((place) => place.from === -1) || parts.rods.some((rod) => rod.includes(-1)) || balls.length === 0) see(origin, 0);
+    if (parts.links.some(({from}) => from === -1) || balls.length === 0) see(origin, 0);
     this.camera.find([...balls, ...ends.map((r) => [...r, 0])], this.down);
   }
 
-  // Position of a joint, a point or a contact on a body, in body axes; else the axis of the body towards the origin, which need not
-  // be fixed in the body.
-  attached(body, y) {
-    const {parts} = this, centre = this.placeAt(y, body.place), axes = this.axesOf(body, y);
-    const joint = parts.joints.find((j) => j.of.includes(body.place)), point = parts.places.find((place) => place.from === body.place);
-    const contact = parts.contacts.find(({of}) => of === body.place), part = joint || point || contact;
-    const spot = part ? this.position(y, part.at) : origin;
-    const inBody = axes.map((e) => dot(e, minus(spot, centre)));
-    return part ? inBody : nearestAxis(body.inertia.map((i) => this.sizes[i]), inBody);
-  }
   axesOf(body, y) {
     if (body.axes === null) return fixedAxes;
     const e1 = this.position(y, body.axes[0]), e2 = this.position(y, body.axes[1]);
@@ -75,8 +55,8 @@ class Scene {
   bodyItems(body, index, y, items) {
     const world = this.worldOf(body, y), {pencil, camera} = this, colour = this.colour(body.place), lit = unit(plus(plus(camera.toward, scaled(camera.above, 0.7)), scaled(camera.right, -0.3)));
     for (const shape of this.shapes[index]) {
-      if (shape.kind === "sphere") items.push({depth: camera.depth(world(shape.at || origin)), paint: () => pencil.ball(world(shape.at || origin), this.axesOf(body, y), shape.radius, colour)});
-      if (shape.kind === "arrow") items.push({depth: camera.depth(world(origin)), paint: () => pencil.arrow(world(shape.at), world(shape.tip), colour, 3)});
+      if (shape.ball) items.push({depth: camera.depth(world(shape.at)), paint: () => pencil.ball(world(shape.at), this.axesOf(body, y), shape.ball, colour)});
+      if (shape.tip) items.push({depth: camera.depth(world(origin)), paint: () => pencil.arrow(world(shape.at), world(shape.tip), colour, 3)});
       for (const face of shape.faces) {
         const points = face.map(world), outwards = unit(cross(minus(points[1], points[0]), minus(points[2], points[0]))), facing = dot(outwards, camera.toward);
         if (facing < -1e-9 && !face.open) continue;  // hidden by the same solid
@@ -89,38 +69,26 @@ class Scene {
   }
   ownAxes(body, index, y) {
     const {pencil, camera} = this, centre = this.placeAt(y, body.place), reach = Math.max(30 / camera.scale(), ...this.shapes[index].map((shape) => 1.1 * shape.radius));
-    const named = this.shown.names && this.parts.bodies.length < 4 && reach * camera.scale() > 45;
+    const named = this.shown.names && this.parts.solids.length < 4 && reach * camera.scale() > 45;
     this.axesOf(body, y).forEach((e, k) => {
       const drawn = pencil.arrow(centre, plus(centre, scaled(e, reach)), this.colour(body.place), 1.3);
       if (named) pencil.name("e" + (k + 1), drawn, pencil.quiet);
     });
   }
 
-  // Two coupled wheels: kind, centres, radii, the common axis, the direction from one to the other across it; null if
-  // the axes are not parallel.
-  wheels(coupling, y) {
-    const {parts, sizes} = this, [a, b] = coupling.of.map((place) => this.placeAt(y, place)), [n, m] = coupling.axes.map((axis) => unit(this.position(y, axis)));
-    if (![...a, ...b, ...n, ...m].every(Number.isFinite) || Math.hypot(...cross(n, m)) > 1e-6) return null;
-    const across = minus(minus(b, a), scaled(n, dot(n, minus(b, a)))), distance = Math.hypot(...across), round = (shape) => shape.kind === "disk" || shape.kind === "cylinder";
-    const drawn = coupling.of.map((place) => parts.shapes.filter((shape) => shape.place === place && round(shape)).map((shape) => sizes[shape.lengths[0]]));
-    const found = wheelsOf(sizes[coupling.ratio] * Math.sign(dot(n, m)), coupling.carried, distance, drawn);
-    return found ? {...found, centres: [a, b], axis: n, along: scaled(across, 1 / distance), distance} : null;
-  }
   // Pitch circles, each with a spoke that rotates with its body, and the belt.
-  coupled(coupling, y) {
-    const found = this.wheels(coupling, y), {pencil} = this;
-    if (!found) return;
-    const {kind, centres, radii, axis, along, distance} = found, side = cross(axis, along);
-    centres.forEach((centre, k) => {
-      const ring = [], body = this.parts.bodies.find((other) => other.place === coupling.of[k]);
-      for (let s = 0; s <= 64; ++s) ring.push(plus(centre, plus(scaled(along, radii[k] * Math.cos(Math.PI * s / 32)), scaled(side, radii[k] * Math.sin(Math.PI * s / 32)))));
-      pencil.line(ring, pencil.quiet, 1.6);
-      if (!body) return;
-      const e = this.axesOf(body, y).map((r) => minus(r, scaled(axis, dot(axis, r)))).find((r) => Math.hypot(...r) > 0.5);
-      pencil.line([centre, plus(centre, scaled(unit(e), radii[k]))], pencil.quiet, 1.2);
+  wheels({of, axis, radii, belt}, y) {
+    const {parts, sizes, pencil} = this, centres = of.map((place) => this.placeAt(y, place)), n = unit(this.position(y, axis)), between = minus(centres[1], centres[0]);
+    const along = unit(minus(between, scaled(n, dot(n, between)))), side = cross(n, along), rim = (k, cosine, sine) => plus(centres[k], scaled(plus(scaled(along, cosine), scaled(side, sine)), sizes[radii[k]]));
+    if (!isPoint(rim(0, 1, 0)) || !isPoint(rim(1, 1, 0))) return;
+    of.forEach((place, k) => {
+      pencil.line(Array.from({length: 65}, (_, s) => rim(k, Math.cos(Math.PI * s / 32), Math.sin(Math.PI * s / 32))), pencil.quiet, 1.6);
+      const spoke = this.axesOf(parts.solids.find((body) => body.place === place), y).map((e) => minus(e, scaled(n, dot(n, e)))).find((e) => Math.hypot(...e) > 0.5);
+      pencil.line([centres[k], plus(centres[k], scaled(unit(spoke), sizes[radii[k]]))], pencil.quiet, 1.2);
     });
-    if (kind !== "belt") return;
-    for (const [p, q] of beltLines(radii, distance, along, side)) pencil.line([plus(centres[0], p), plus(centres[1], q)], pencil.quiet, 2);
+    if (belt === null) return;
+    const cosine = sizes[belt], sine = Math.sqrt(1 - cosine ** 2);  // not a number: one pulley is inside the other
+    for (const s of [sine, -sine]) if (isPoint(rim(0, cosine, s))) pencil.line([rim(0, cosine, s), rim(1, cosine, s)], pencil.quiet, 2);
   }
 
   // The contact plane, under the path of the contact.
@@ -145,7 +113,7 @@ class Scene {
     const {pencil, camera} = this, [x, y] = camera.project(origin), length = 40;
     const along = fixedAxes.map((e) => [length * dot(camera.right, e), -length * dot(camera.above, e)]);
     const isInside = ([dx, dy]) => x + 1.5 * dx > 12 && y + 1.5 * dy > 12 && x + 1.5 * dx < camera.width - 12 && y + 1.5 * dy < camera.height - 12;
-    const covered = this.solids.some((body, index) => this.shapes[index].some((shape) => this.covers(body, shape, [x, y])));
+    const covered = this.parts.solids.some((body, index) => this.shapes[index].some((shape) => this.covers(body, shape, [x, y])));
     const foot = !covered && along.every(isInside) ? [x, y] : [62, camera.height - 66];
     along.forEach(([dx, dy], k) => {
       const drawn = pencil.arrow(foot, [foot[0] + dx, foot[1] + dy], pencil.quiet, 1.3);
@@ -194,19 +162,19 @@ class Scene {
         pencil.line(path, this.colour(i), 1.4, 0.4);
       });
     }
-    for (const {at, toward} of this.supports) pencil.support(at(y), toward);
-    for (const {from, to, rigid} of this.links) {
+    for (const {at, toward} of parts.supports) pencil.support(at === null ? origin : this.position(y, at), toward);
+    for (const {from, to, is_rod} of parts.links) {
       const a = this.placeAt(y, from), b = this.placeAt(y, to);
-      items.push({depth: Math.min(camera.depth(a), camera.depth(b)) - 1e-9, paint: () => (rigid ? pencil.line([a, b], pencil.ink, 2.5, 0.75) : pencil.dashed([a, b], pencil.quiet, 1))});
+      items.push({depth: Math.min(camera.depth(a), camera.depth(b)) - 1e-9, paint: () => (is_rod ? pencil.line([a, b], pencil.ink, 2.5, 0.75) : pencil.dashed([a, b], pencil.quiet, 1))});
     }
     parts.places.forEach((place, i) => {
-      const here = this.position(y, place.at), index = this.solids.findIndex((body) => body.place === i), solid = index >= 0 && this.shapes[index].length > 0;
+      const here = this.position(y, place.at), index = parts.solids.findIndex((body) => body.place === i), solid = index >= 0 && this.shapes[index].length > 0;
       items.push({depth: solid ? Infinity : camera.depth(here), paint: () => {
         if (place.kind === "point") pencil.dot(here, 3, pencil.quiet);
         else pencil.dot(here, solid ? 3 : 8, this.colour(i), solid ? null : pencil.paper);
       }});
     });
-    this.solids.forEach((body, index) => this.bodyItems(body, index, y, items));
+    parts.solids.forEach((body, index) => this.bodyItems(body, index, y, items));
     for (const joint of parts.joints) {
       const at = this.position(y, joint.at);
       for (const of of joint.of) if (of !== null) items.push({depth: camera.depth(at), paint: () => pencil.line([this.placeAt(y, of), at], pencil.ink, 1.5, 0.5)});
@@ -215,7 +183,7 @@ class Scene {
     const wide = Math.min(9, 0.1 * camera.scale() * camera.size);
     for (const {a, b} of parts.springs) items.push({depth: camera.depth(this.position(y, a)), paint: () => pencil.coil(this.position(y, a), this.position(y, b), wide)});
     for (const {a, b} of parts.dampers) items.push({depth: camera.depth(this.position(y, a)), paint: () => pencil.damper(this.position(y, a), this.position(y, b))});
-    for (const coupling of parts.couplings) items.push({depth: Infinity, paint: () => this.coupled(coupling, y)});
+    for (const pair of parts.wheels) items.push({depth: Infinity, paint: () => this.wheels(pair, y)});
     for (const contact of parts.contacts) items.push({depth: Infinity, paint: () => pencil.dot(this.position(y, contact.at), 3, pencil.ink)});
     items.sort((a, b) => (a.depth < b.depth ? -1 : a.depth > b.depth ? 1 : 0));
     for (const item of items) item.paint();

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -16,7 +17,10 @@
 #include "analysis/drawing/solids.hpp"
 #include "analysis/drawing/view.hpp"
 #include "derive/formulations/lagrange.hpp"
+#include "lists.hpp"
+#include "numeric/numbers.hpp"
 #include "support/folders.hpp"
+#include "symbolic/evaluate.hpp"
 
 using namespace eomgen;
 using analysis::Point;
@@ -62,16 +66,48 @@ std::set<std::string> names(const Figure& figure) {
   return result;
 }
 
-/// Mass, then the nine entries of the inertia, as in the sizes of a drawing.
-std::pair<analysis::DrawnBody, std::vector<double>> body(double mass, const Eigen::Matrix3d& inertia) {
-  analysis::DrawnBody result{};
-  std::vector<double> sizes{mass};
-  for (int i = 0; i < 9; ++i) {
-    result.inertia[static_cast<std::size_t>(i)] = sizes.size();
-    sizes.push_back(inertia(i / 3, i % 3));
+/// A body with this mass and inertia.
+struct Weighed {
+  Weighed(double mass, const Eigen::Matrix3d& inertia) : sizes(dag, parameters) {
+    const auto number = [this](double x) { return dag.constant(numeric::exact(x)); };
+    body.mass = number(mass);
+    for (int i = 0; i < 9; ++i) body.inertia[static_cast<std::size_t>(i)] = number(inertia(i / 3, i % 3));
   }
-  return {result, sizes};
-}
+  analysis::Solid solid(const std::optional<analysis::DrawnSolid>& drawn) const {
+    return analysis::evaluate(drawn.value(), sizes.values()).value();
+  }
+
+  symbolic::Dag dag;
+  std::vector<double> parameters;
+  analysis::Sizes sizes;
+  analysis::DrawnBody body{};
+};
+
+/// The primitives of a model at the start of its default scene.
+struct Decided {
+  explicit Decided(model::Model given)
+      : model(std::move(given)),
+        m(mechanics::build_mechanics(model)),
+        drawing(m),
+        scene(run::resolve_scene(m, derive::lagrange(m, system::Approach::two), m.model->scene("default"), {})),
+        list(analysis::primitives(drawing, *m.dag, scene, {})) {}
+  explicit Decided(const std::string& text) : Decided(model::read_model_text("format = 1\n" + text, "model.toml")) {}
+
+  /// The sizes after a parameter was set.
+  std::vector<double> sizes(const std::string& name, double value) const {
+    std::vector<double> parameters = scene.parameters;
+    for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+      if (model.parameters[i].name == name) parameters[i] = value;
+    }
+    return symbolic::evaluate(*m.dag, list.sizes, [&](const symbolic::Symbol& s) { return parameters[s.index]; });
+  }
+
+  model::Model model;
+  mechanics::Mechanics m;
+  analysis::Drawing drawing;
+  run::Scene scene;
+  analysis::Primitives list;
+};
 
 Point extent(const analysis::Solid& solid) {
   Point low = Point::Constant(1e300), high = -low;
@@ -105,28 +141,173 @@ TEST_CASE("view: a plane is seen along its normal with gravity downwards, space 
 
 TEST_CASE("solids: homogeneous bodies are found from mass and moments, in any orientation") {
   const double m = 3;
+  const auto found = [m](const Eigen::Matrix3d& inertia) {
+    Weighed body(m, inertia);
+    return body.solid(analysis::solid_of_inertia(body.body, body.sizes));
+  };
   // A box 0.2 x 0.5 x 1.
   const Eigen::Matrix3d box = (m / 12 * Point(0.25 + 1, 0.04 + 1, 0.04 + 0.25)).asDiagonal();
-  const auto [plain, sizes] = body(m, box);
-  CHECK((extent(*analysis::solid_of_inertia(plain, sizes)) - Point(0.2, 0.5, 1)).norm() < drawing_rounding);
+  CHECK((extent(found(box)) - Point(0.2, 0.5, 1)).norm() < drawing_rounding);
   const Eigen::Matrix3d turn =
       (Eigen::AngleAxisd(0.3, Point::UnitX()) * Eigen::AngleAxisd(1.1, Point::UnitZ())).toRotationMatrix();
-  const auto [turned, turned_sizes] = body(m, turn * box * turn.transpose());
-  analysis::Solid back = *analysis::solid_of_inertia(turned, turned_sizes);
+  analysis::Solid back = found(turn * box * turn.transpose());
   for (std::vector<Point>& face : back.faces) {
     for (Point& r : face) r = turn.transpose() * r;
   }
   CHECK((extent(back) - Point(0.2, 0.5, 1)).norm() < 1e3 * drawing_rounding);  // of an eigenvector
   // A cylinder of radius 0.4 and length 1 about the second axis; a ball of radius 0.7.
   const double across = m / 12 * (3 * 0.16 + 1);
-  const auto [roller, roller_sizes] = body(m, Point(across, m / 2 * 0.16, across).asDiagonal());
-  CHECK(extent(*analysis::solid_of_inertia(roller, roller_sizes)).y() == doctest::Approx(1));
-  const auto [ball, ball_sizes] = body(m, Point::Constant(0.4 * m * 0.49).asDiagonal());
-  CHECK(analysis::solid_of_inertia(ball, ball_sizes)->ball == doctest::Approx(0.7));
+  CHECK(extent(found(Point(across, m / 2 * 0.16, across).asDiagonal())).y() == doctest::Approx(1));
+  CHECK(found(Point::Constant(0.4 * m * 0.49).asDiagonal()).ball == doctest::Approx(0.7));
   // No homogeneous body has a single moment: it is a bar as long as a uniform one, towards its attachment.
-  const auto [link, link_sizes] = body(m, Point(0, 0, m / 12 * 4).asDiagonal());
-  CHECK_FALSE(analysis::solid_of_inertia(link, link_sizes));
-  CHECK(extent(*analysis::bar_of_inertia(link, link_sizes, {-1, 0, 0})).x() == doctest::Approx(2));
+  Weighed link(m, Point(0, 0, m / 12 * 4).asDiagonal());
+  CHECK_FALSE(analysis::solid_of_inertia(link.body, link.sizes));
+  const symbolic::Vec3 spot{link.dag.integer(-1), link.dag.zero(), link.dag.zero()};
+  CHECK(extent(link.solid(analysis::bar_of_inertia(link.body, link.sizes, spot))).x() == doctest::Approx(2));
+}
+
+TEST_CASE("primitives: vertices follow the parameters, with the kind of solid and the axes of the start") {
+  const Decided brick(R"toml([parameters]
+a = "0.4 m"
+R = "0.2 m"
+[[body]]
+name = "brick"
+mass = "2 kg"
+inertia = { box = ["a", "0.3 m", "0.1 m"] }
+position = { cartesian = ["x", "y", "z"] }
+rotation = { euler = "321", angles = ["psi", "theta", "phi"] }
+[[body]]
+name = "wheel"
+mass = "2 kg"
+inertia = { principal = ["1[kg]*R^2", "1[kg]*R^2/2", "1[kg]*R^2/2"] }
+position = { cartesian = ["X", "Y", "Z"] }
+rotation = { euler = "321", angles = ["f", "g", "h"] }
+[[particle]]
+name = "P"
+mass = "1 kg"
+position = { cartesian = ["u", "v", "w"] }
+[draw]
+P = [{ cylinder = ["a", "R"], axis = "e1", at = ["a", 0, 1] }, { sphere = "a - R" }]
+)toml");
+  const auto solids = [&](const std::string& name, double value) {
+    const std::vector<double> sizes = brick.sizes(name, value);
+    std::vector<std::optional<analysis::Solid>> result;
+    for (const analysis::DrawnSolids& drawn : brick.list.solids) {
+      for (const analysis::DrawnSolid& one : drawn.list) result.push_back(analysis::evaluate(one, sizes));
+    }
+    REQUIRE(result.size() == 4);
+    return result;
+  };
+  CHECK((extent(*solids("a", 0.4)[0]) - Point(0.4, 0.3, 0.1)).norm() < drawing_rounding);
+  CHECK((extent(*solids("a", 0.7)[0]) - Point(0.7, 0.3, 0.1)).norm() < drawing_rounding);
+  CHECK(extent(*solids("R", 0.3)[1]).y() == doctest::Approx(2 * 0.3));
+  const analysis::Solid cylinder = *solids("a", 0.7)[2];
+  CHECK((extent(cylinder) - Point(0.2, 1.4, 1.4)).norm() < drawing_rounding);
+  CHECK((cylinder.at - Point(0.7, 0, 1)).norm() < drawing_rounding);
+  CHECK(solids("a", 0.7)[3]->ball == doctest::Approx(0.5));
+  CHECK_FALSE(solids("a", 0.1)[3]);  // no radius
+  CHECK_FALSE(solids("a", 0)[2]);
+}
+
+TEST_CASE("primitives: a bar points at its attachment for all parameters") {
+  const Decided block(R"toml([parameters]
+b = "0.3 m"
+[[body]]
+name = "block"
+mass = "2 kg"
+inertia = "0.1 kg*m^2"
+position = { cartesian = ["x", "y"] }
+rotation = { axis = "E3", angle = "q" }
+[[joint]]
+name = "corner"
+bodies = ["ground", "block"]
+type = "ball"
+at = ["origin", "block - b*block.e1 - 0.4[m]*block.e2"]
+[scene.default]
+initial = { q = 0.3 }
+solve = ["x", "y"]
+)toml");
+  for (const double b : {0.3, 0.1}) {
+    const Point size = extent(*analysis::evaluate(block.list.solids.at(0).list.at(0), block.sizes("b", b)));
+    CHECK(size.norm() > 0.7);
+    CHECK(std::abs(size.x() / size.y() - b / 0.4) < 0.06);  // the bar has a width
+  }
+}
+
+TEST_CASE("primitives: gears touch with radii in the ratio of their speeds, a belt is tangential to its pulleys") {
+  const auto pair = [](const std::string& ratio, const std::string& draw, const std::string& distance = "D") {
+    return Decided(
+        "[parameters]\nD = \"0.25 m\"\nn = 4\n[[body]]\nname = \"A\"\nmass = \"1 kg\"\ninertia = \"2 kg*m^2\"\n"
+        "rotation = { axis = \"E3\", angle = \"a\" }\n[[body]]\nname = \"B\"\nmass = \"1 kg\"\n"
+        "inertia = \"2 kg*m^2\"\nposition = \"" +
+        distance +
+        "*E2\"\nrotation = { axis = \"E3\", angle = \"b\" }\n"
+        "[[constraint]]\nname = \"pair\"\ngear = { bodies = [\"A\", \"B\"], axes = \"E3\", ratio = \"" +
+        ratio + "\" }\n" + draw);
+  };
+  const auto radii = [](const Decided& of, const std::vector<double>& sizes) {
+    REQUIRE(of.list.wheels.size() == 1);
+    return std::array{sizes[of.list.wheels[0].radii[0]], sizes[of.list.wheels[0].radii[1]]};
+  };
+  const Decided mesh = pair("-n", "");
+  CHECK_FALSE(mesh.list.wheels.at(0).belt);
+  CHECK(radii(mesh, mesh.list.size_values)[0] == doctest::Approx(0.05));
+  CHECK(radii(mesh, mesh.list.size_values)[1] == doctest::Approx(0.2));
+  CHECK(radii(mesh, mesh.sizes("D", 0.5))[1] == doctest::Approx(0.4));
+  CHECK(radii(mesh, mesh.sizes("n", 1.5))[0] == doctest::Approx(0.1));
+  const Decided belt = pair("2", "");
+  CHECK(radii(belt, belt.list.size_values)[1] == doctest::Approx(2 * radii(belt, belt.list.size_values)[0]));
+  const Decided drawn =
+      pair("2", "[draw]\nA = [{ disk = \"D/5\" }, { disk = 0.02 }]\nB = [{ disk = 0.05 }, { disk = 0.04 }]\n");
+  CHECK(radii(drawn, drawn.list.size_values) == std::array{0.02, 0.04});
+  const double cosine = drawn.list.size_values[drawn.list.wheels[0].belt.value()];
+  CHECK(cosine == doctest::Approx(-0.02 / 0.25));  // (r1 - r2)/D
+  CHECK(pair("-n", "", "0").list.wheels.empty());
+  // In a ring gear on a carrier.
+  const Decided ring(R"toml([[body]]
+name = "arm"
+mass = "1 kg"
+inertia = "1 kg*m^2"
+rotation = { axis = "E3", angle = "c" }
+[[body]]
+name = "ring"
+mass = "1 kg"
+inertia = "1 kg*m^2"
+rotation = { axis = "E3", angle = "s" }
+[[body]]
+name = "planet"
+mass = "1 kg"
+inertia = "1 kg*m^2"
+position = "0.3[m]*arm.e1"
+rotation = { axis = "E3", angle = "p" }
+[[constraint]]
+name = "pair"
+gear = { bodies = ["ring", "planet"], axes = "E3", carrier = "arm", ratio = 0.25 }
+)toml");
+  CHECK(radii(ring, ring.list.size_values)[0] == doctest::Approx(0.4));
+  CHECK(radii(ring, ring.list.size_values)[1] == doctest::Approx(0.1));
+}
+
+TEST_CASE("primitives: rods keep their length in all states and at all times; the ground holds what does not move") {
+  const auto links = [](const std::string& text) {
+    const Decided found("[parameters]\nl = \"1 m\"\n" + text);
+    REQUIRE(found.list.links.size() == 1);
+    CHECK(found.list.supports.size() == (found.list.links[0].is_rod ? 1 : 0));
+    return found.list.links[0].is_rod;
+  };
+  const std::string particle = "[[particle]]\nname = \"P\"\nmass = \"1 kg\"\n";
+  CHECK(links(particle + "position = { cylindrical = [\"l\", \"q\"] }\n"));
+  CHECK_FALSE(links(particle + "position = { cylindrical = [\"r\", \"q\"] }\n[scene.default]\ninitial = { r = 1 }\n"));
+  CHECK_FALSE(links(particle + "position = { cylindrical = [\"l*(1 + t/1[s])\", \"q\"] }\n"));
+  // A constraint holds the radius.
+  CHECK(links(particle + "position = { cylindrical = [\"r\", \"q\"] }\n[[constraint]]\nname = \"c\"\nholonomic = \"r - "
+                         "l\"\n[scene.default]\n"
+                         "initial = { r = 1 }\n"));
+  const Decided hung(
+      "[[particle]]\nname = \"P\"\nmass = \"1 kg\"\nposition = { cartesian = [\"x\", \"y\"] }\n[[force]]\n"
+      "spring = { between = [\"P\", \"2[m]*E2\"], stiffness = \"1 N/m\" }\n[scene.default]\ninitial = { y = 1 }\n");
+  REQUIRE(hung.list.supports.size() == 1);
+  CHECK(hung.list.supports[0].toward == Point(0, -1, 0));
 }
 
 TEST_CASE("solids: the convex hull of points has each face once, oriented outwards") {
@@ -136,10 +317,11 @@ TEST_CASE("solids: the convex hull of points has each face once, oriented outwar
   points.emplace_back(0.5, 0.5, 3);
   points.emplace_back(1, 2, 0);
   points.emplace_back(1, 2, 3);
-  const std::vector<std::vector<Point>> faces = analysis::convex_hull(points);
+  const analysis::Faces faces = analysis::convex_hull(points);
   REQUIRE(faces.size() == 6);
   double surface = 0;
-  for (const std::vector<Point>& face : faces) {
+  for (const auto& indices : faces) {
+    const auto face = mapped(indices, [&](std::uint32_t k) { return points[k]; });
     CHECK(face.size() == 4);
     const Point across = (face[1] - face[0]).cross(face[2] - face[1]);
     CHECK(across.dot(face[0]) > 0);  // the centre is inside
@@ -202,12 +384,10 @@ TEST_CASE("figure: a line of variable length is no rod; particles have shapes, w
 
 TEST_CASE("figure: a body has the edges that it does not hide itself") {
   // A box seen from above and the side shows three faces: nine edges.
-  analysis::Solid solid;
-  const auto [box, sizes] = body(1, (Point(0.25 + 1, 0.04 + 1, 0.04 + 0.25) / 12).asDiagonal());
-  solid = *analysis::solid_of_inertia(box, sizes);
+  Weighed box(1, (Point(0.25 + 1, 0.04 + 1, 0.04 + 0.25) / 12).asDiagonal());
   const View view({{0, 0, 0}, {1, 1, 1}}, std::nullopt);
   analysis::Sketch sketch(view, {{-1, -1, -1}, {1, 1, 1}});
-  sketch.solid(solid, [](const Point& r) { return r; });
+  sketch.solid(box.solid(analysis::solid_of_inertia(box.body, box.sizes)), [](const Point& r) { return r; });
   CHECK(sketch.finish().strokes.size() == 9);
 }
 
@@ -240,31 +420,29 @@ TEST_CASE("figure: a figure with too many strokes is refused with their number")
   CHECK_THROWS_WITH_AS(drawn(model(300)), doctest::Contains("strokes, above 4000"), Error);
 }
 
-TEST_CASE("solids: a planar body without a joint is a bar along its own axis") {
+TEST_CASE("solids: a planar body without a joint is a bar along its own axis, or towards its contact") {
   // The centre and the angle of a ladder that disagree in sign: the body's e2 leans left, the line to the origin right.
-  const double theta = 10 * 3.14159265358979 / 180, L = 2, m = 3;
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
-  inertia(2, 2) = m * L * L / 12;
-  auto [ladder, sizes] = body(m, inertia);
-  ladder.axes = {3, 6};
-  const std::vector<double> values{L / 2 * std::sin(theta), L / 2 * std::cos(theta), 0,  // centre
-                                   std::cos(theta),         std::sin(theta),         0,  // e1
-                                   -std::sin(theta),        std::cos(theta),         0};
-  analysis::DrawnParts parts{};
-  parts.places.push_back({"ladder", "body", std::nullopt, 0});
-  parts.bodies.push_back(ladder);
-  const auto placed = analysis::placed_solids(parts, sizes, values);
-  REQUIRE(placed.size() == 1);
-  REQUIRE(placed[0].solids.size() == 1);
-  const Point size = extent(placed[0].solids[0]);  // in body axes
-  CHECK(std::abs(size.y() - L) < 1e-9);
-  CHECK(size.x() < 0.1 * L);
-  CHECK(analysis::nearest_axis(ladder, sizes, Point(0.3, -0.2, 5)) == Point(1, 0, 0));
-  // Towards a contact, where there is one: here on the other axis.
-  std::vector<double> touching = values;
-  for (std::size_t k = 0; k < 3; ++k) touching.push_back(values[k] - L / 2 * values[3 + k]);
-  parts.contacts.push_back({"floor", 0, 9, std::nullopt, 9});
-  const Point turned = extent(analysis::placed_solids(parts, sizes, touching)[0].solids.at(0));
-  CHECK(std::abs(turned.x() - L) < 1e-9);
-  CHECK(turned.y() < 0.1 * L);
+  const auto size = [](const std::string& more) {
+    const Decided ladder(R"toml([parameters]
+L = "2 m"
+theta = "10 deg"
+[[body]]
+name = "ladder"
+mass = "3 kg"
+inertia = "3[kg]*L^2/12"
+position = { cartesian = ["x", "y"] }
+rotation = { axis = "E3", angle = "q" }
+)toml" + more + R"toml([scene.default]
+initial = { x = "L/2*sin(theta)", y = "L/2*cos(theta)", q = "theta" }
+)toml");
+    REQUIRE(ladder.list.solids.size() == 1);
+    return extent(*analysis::evaluate(ladder.list.solids[0].list.at(0), ladder.list.size_values));  // in body axes
+  };
+  CHECK(std::abs(size("").y() - 2) < 1e-9);
+  CHECK(size("").x() < 0.1 * 2);
+  Weighed body(1, Point(0, 0, 1).asDiagonal());
+  CHECK(analysis::nearest_axis(body.body, body.sizes, Point(0.3, -0.2, 5)) == Point(1, 0, 0));
+  const Decided block(model::read_model(test::source_folder() + "/models/rocking_block.toml"));
+  const Point diagonal = extent(*analysis::evaluate(block.list.solids.at(0).list.at(0), block.list.size_values));
+  CHECK(diagonal.maxCoeff() / diagonal.norm() == doctest::Approx(0.8 / std::hypot(0.2, 0.8)).epsilon(0.02));  // b and h
 }

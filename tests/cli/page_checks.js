@@ -79,7 +79,7 @@ function cornerOff(report, csv, name) {
   let far = 0;
   for (const row of csv.rows) {
     const y = report.motion().at(row[0]), wanted = scene.camera.project(row.slice(column, column + 3));
-    scene.solids.forEach((body, index) => scene.shapes[index].forEach((shape) => {
+    scene.parts.solids.forEach((body, index) => scene.shapes[index].forEach((shape) => {
       const off = shape.faces.flatMap((face) => face.map(scene.worldOf(body, y))).map((r) => scene.camera.project(r)).map((p) => Math.hypot(p[0] - wanted[0], p[1] - wanted[1]));
       far = Math.max(far, Math.min(...off));
     }));
@@ -169,14 +169,14 @@ async function wait(condition) {
   return condition();
 }
 
-// Drags a drawn point. Returns its new position and the residual of the constraints.
-async function drag(frame, report, name) {
+// Drags a drawn point by so many pixels. Returns its new position and the residual of the constraints.
+async function drag(frame, report, {name, by}) {
   const page = frame.contentDocument, canvas = page.getElementById("scene"), place = report.data.parts.places.find((p) => p.name === name), {camera} = report.scene;
   const at = () => camera.project(report.scene.position(report.scene.now, place.at)), corner = box(canvas);
   const send = (kind, [x, y]) => canvas.dispatchEvent(new frame.contentWindow.PointerEvent(kind, {pointerId: 7, button: 0, buttons: kind === "pointerup" ? 0 : 1, clientX: corner.left + x, clientY: corner.top + y, bubbles: true}));
   report.player.play(false);
   report.player.jump(report.player.t0);
-  const begin = at(), end = [begin[0] - 40, begin[1] - 30];
+  const begin = at(), end = [begin[0] + by[0], begin[1] + by[1]];
   send("pointerdown", begin);
   for (let k = 1; k <= 8; ++k) send("pointermove", [begin[0] + (end[0] - begin[0]) * k / 8, begin[1] + (end[1] - begin[1]) * k / 8]);
   const reached = at();

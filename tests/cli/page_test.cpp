@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -119,9 +120,10 @@ struct PageCase {
   bool live = true;         // the page integrates it
   std::string slider = {};  // a parameter that is moved
   double value = 0;
-  std::string drag = {};    // a point that is dragged
-  std::string corner = {};  // a point that is a corner of a drawn body
-  bool sphere = false;      // its particle is on a sphere about the origin
+  std::string drag = {};               // a point that is dragged
+  std::string corner = {};             // a point that is a corner of a drawn body
+  bool sphere = false;                 // its particle is on a sphere about the origin
+  std::array<int, 2> by = {-40, -30};  // pixels by which the point is dragged
 };
 
 std::string source(const std::string& path) {
@@ -324,7 +326,8 @@ TEST_CASE("page: reports show complete equations, replay the run, and integrate 
                                    {"rocking_block", true, "b", 0.3, "block"},
                                    {"pushed.toml", false},
                                    {"six_bar_spatial", true, "k", 170, "plate"},
-                                   {"n_four_bar_2", true, "", 0, "K1"},
+                                   // To where it does not swing through its singular position.
+                                   {"n_four_bar_2", true, "", 0, "K1", "", false, {-150, 160}},
                                    {"rimless_wheel", true, "gamma", 0.1},
                                    {"sampled_cart_pole", true, "kp", 44},
                                    {"chain_10.toml", true, "L", 1.2}};
@@ -338,7 +341,7 @@ TEST_CASE("page: reports show complete equations, replay the run, and integrate 
     const std::size_t begin = page.find("id=\"motion\">") + 12;
     const Json motion = Json::parse(page.substr(begin, page.find("</script>", begin) - begin));
     Json entry{{"name", c.model}, {"page", page}, {"csv", positions(folder, c.model, motion["parts"]["places"])}};
-    if (!c.drag.empty()) entry["drag"] = c.drag;
+    if (!c.drag.empty()) entry["drag"] = {{"name", c.drag}, {"by", c.by}};
     if (c.model == "bowl.toml") entry["bowl"] = true;
     if (c.model == "bouncing_ball") entry["floor"] = entry["film"] = true;
     if (!c.corner.empty()) entry["corner"] = c.corner;

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <tuple>
 #include <vector>
 
+#include "page_script.hpp"
 #include "program.hpp"
 #include "support/folders.hpp"
 
@@ -53,6 +55,18 @@ Json motion(const std::string& page) {
   return Json::parse(page.substr(begin, page.find("</script>", begin) - begin));
 }
 
+/// Largest difference of the numbers of two documents of the same form.
+double difference(const Json& a, const Json& b) {
+  if (a.is_number() && b.is_number()) return std::abs(a.get<double>() - b.get<double>());
+  REQUIRE(a.type() == b.type());
+  REQUIRE(a.size() == b.size());
+  double largest = 0;
+  if (!a.is_structured()) CHECK(a == b);
+  for (auto i = a.begin(), j = b.begin(); a.is_structured() && i != a.end(); ++i, ++j)
+    largest = std::max(largest, difference(*i, *j));
+  return largest;
+}
+
 }  // namespace
 
 TEST_CASE("report: one page with equations, certificate, run, plots and animation, without external references") {
@@ -80,8 +94,8 @@ TEST_CASE(
   Json moving = motion(folder.read("page.html"));
   REQUIRE(moving["parts"]["places"].size() == 2);
   CHECK(moving["t"].back() == 1.0);
-  CHECK(moving["parts"]["places"][0]["from"] == -1);
-  CHECK(moving["parts"]["places"][1]["from"] == 0);
+  CHECK(moving["parts"]["links"][0] == Json::parse(R"({"from": -1, "to": 0, "is_rod": true})"));
+  CHECK(moving["parts"]["links"][1] == Json::parse(R"({"from": 0, "to": 1, "is_rod": true})"));
   CHECK(moving["live"]["n"] == 2);
   CHECK(moving["reason"] == "");
   CHECK(moving["y"].is_null());
@@ -189,44 +203,24 @@ initial = { x = 1 }
   CHECK(parts["springs"][0]["a"] != parts["springs"][0]["b"]);
 }
 
-TEST_CASE(
-    "report: meshing gears touch between their centres with radii in the ratio of their teeth, a belt runs over its "
-    "pulleys") {
+TEST_CASE("report: the solids of a page follow its parameters as in a run of the program") {
   const Folder folder;
-  expect(0, folder, {"report", "geared_hoist", "-o", "page.html", "--t-end", "0.1"});
-  const Json moving = motion(folder.read("page.html")), couplings = moving["parts"]["couplings"];
-  REQUIRE(couplings.size() == 2);
-  CHECK(couplings[0]["of"] == Json::array({0, 1}));
-  CHECK(couplings[1]["of"] == Json::array({1, 2}));
-  CHECK(moving["sizes"][couplings[0]["ratio"].get<std::size_t>()] == -4);
-  CHECK(moving["sizes"][couplings[1]["ratio"].get<std::size_t>()] == 2);
-  CHECK(couplings[0]["axes"][0] != couplings[0]["axes"][1]);
-  // Runs the script of the page in Node.
-  std::string script;
-  for (const char* part : {"linear.js", "shapes.js"}) {
-    std::ifstream file(source_folder() + "/templates/report/" + part);
-    script.append(std::istreambuf_iterator<char>(file), {});
-  }
-  folder.write("wheels.js", script + R"(
-const [belt] = beltLines([0.1, 0.2], 1, [1, 0, 0], [0, 1, 0]), ends = [belt[0], plus([1, 0, 0], belt[1])], along = minus(ends[1], ends[0]);
-console.log(JSON.stringify({mesh: wheelsOf(-4, false, 0.25, [[], []]), ring: wheelsOf(0.25, true, 0.3, [[], []]), drawn: wheelsOf(2, false, 1, [[0.2, 0.1], [0.2, 0.15]]),
-  belt: wheelsOf(2, false, 1, [[], []]), none: [wheelsOf(-4, false, 0, [[], []]), wheelsOf(1, true, 1, [[], []]), beltLines([2, 0.5], 1, [1, 0, 0], [0, 1, 0])],
-  tangent: [dot(along, belt[0]), dot(along, belt[1])]}));)");
-  try {
-    const ChildResult result = run_child({{"node", "wheels.js"}, folder.path()});
-    CAPTURE(result.err);
-    REQUIRE(result.status == 0);
-    const Json found = Json::parse(result.out);
-    CHECK(found["mesh"] == Json::parse(R"({"kind": "mesh", "radii": [0.05, 0.2]})"));
-    CHECK(found["ring"]["kind"] == "ring");
-    CHECK(found["ring"]["radii"][0].get<double>() == doctest::Approx(0.4));
-    CHECK(found["ring"]["radii"][1].get<double>() == doctest::Approx(0.1));
-    CHECK(found["drawn"] == Json::parse(R"({"kind": "belt", "radii": [0.1, 0.2]})"));
-    CHECK(found["belt"]["radii"][1].get<double>() == doctest::Approx(2 * found["belt"]["radii"][0].get<double>()));
-    CHECK(found["none"] == Json::parse("[null, null, []]"));
-    for (const Json& product : found["tangent"]) CHECK(std::abs(product.get<double>()) < 1e-15);
-  } catch (const std::runtime_error&) {
-    MESSAGE("skipped: there is no node");
+  // Shapes of [draw] and of inertias, wheels, a bar towards a contact.
+  for (const auto& [model, name, value] :
+       {std::tuple{"geared_hoist", "r1", 0.08}, {"rocking_block", "b", 0.3}, {"R7_satellite", "m", 2.0}}) {
+    CAPTURE(model);
+    std::ifstream file(source_folder() + "/templates/report/solids.js");
+    const std::string compared = std::string(std::istreambuf_iterator<char>(file), {}) + R"(
+const {parts, sizes} = data, all = (values) => parts.solids.map(({list}) => list.map((solid) => solidOf(solid, parts.polyhedra, values)));
+console.log(JSON.stringify({solids: all(live.sizes), wheels: parts.wheels.map(({radii}) => radii.map((i) => live.sizes[i])), before: all(sizes)}));)";
+    const std::optional<Json> moved = page(folder, model, {{name, value}}, {"--t-end", "0.1"}, compared.c_str());
+    if (!moved) return;
+    const std::optional<Json> set =
+        page(folder, model, {}, {"--t-end", "0.1", "--set", std::string(name) + "=" + std::to_string(value)},
+             compared.c_str());
+    CHECK((*moved)["before"] != (*set)["solids"]);
+    CHECK(difference((*moved)["solids"], (*set)["solids"]) < 1e-9);
+    CHECK(difference((*moved)["wheels"], (*set)["wheels"]) < 1e-9);
   }
 }
 

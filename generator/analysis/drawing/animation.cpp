@@ -117,31 +117,28 @@ TriangleMesh mesh_of(const std::vector<Solid>& solids, double extent) {
 
 class Animator {
  public:
-  Animator(const DrawnParts& parts, const std::vector<double>& sizes, const Rows& rows) : parts_(parts), rows_(rows) {
+  Animator(const DrawnParts& parts, const Primitives& list, const Rows& rows)
+      : parts_(parts), list_(list), rows_(rows) {
     for (const std::vector<double>& row : rows) {
       for (const DrawnPlace& place : parts.places) {
         const Point at = vector(row, place.at);
         if (at.allFinite()) box_.extend(at);
       }
     }
-    if (!rows.empty()) solids_ = placed_solids(parts, sizes, rows.front());
+    if (!rows.empty()) solids_ = placed_solids(parts, list, rows.front());
     extent_ = box_.isEmpty() ? 1 : std::max(box_.diagonal().norm(), largest_solid());
     if (!(extent_ > 0)) extent_ = 1;
   }
 
   std::vector<AnimatedNode> run() {
     if (rows_.empty()) return {};
-    for (const PlacedSolids& placed : solids_) add_solids(placed);
+    for (std::size_t i = 0; i < solids_.size(); ++i) add_solids(list_.solids[i], solids_[i]);
     for (std::size_t i = 0; i < parts_.places.size(); ++i) {
       if (!has_solid_[i]) add_spot(i);
     }
-    for (std::size_t i = 0; i < parts_.places.size(); ++i) {
-      const std::optional<long>& from = parts_.places[i].from;
-      if (!from || touches_surface(i)) continue;
-      const Ends line = ends(*from, static_cast<long>(i));
-      if (is_rigid(line)) add_line(AnimatedKind::rod, "to " + parts_.places[i].name, line);
+    for (const DrawnLink& link : list_.links) {
+      if (link.is_rod) add_line(AnimatedKind::rod, name_of(link), ends(link.from, link.to));
     }
-    for (const DrawnRod& rod : parts_.rods) add_line(AnimatedKind::rod, "rod", ends(rod.a, rod.b));
     for (const DrawnLine& line : parts_.springs) add_line(AnimatedKind::spring, "spring", ends(line));
     for (const DrawnLine& line : parts_.dampers) add_line(AnimatedKind::damper, "damper", ends(line));
     return std::move(nodes_);
@@ -178,18 +175,19 @@ class Animator {
     nodes_.push_back(std::move(node));
   }
 
-  void add_solids(const PlacedSolids& placed) {
+  /// A line to a place is named after it.
+  std::string name_of(const DrawnLink& link) const {
+    const DrawnPlace& to = parts_.places[static_cast<std::size_t>(link.to)];
+    return to.from == link.from ? "to " + to.name : "rod";
+  }
+
+  void add_solids(const DrawnSolids& drawn, const PlacedSolids& placed) {
     if (placed.solids.empty()) return;
     const DrawnPlace& place = parts_.places[placed.place];
-    const auto body = std::find_if(parts_.bodies.begin(), parts_.bodies.end(),
-                                   [&](const DrawnBody& b) { return b.place == placed.place; });
     AnimatedNode node{place.name, AnimatedKind::body, mesh_of(placed.solids, extent_), positions(place.at), {}, {}};
-    if (body != parts_.bodies.end()) {
+    if (drawn.axes) {
       for (const std::vector<double>& row : rows_) {
-        Eigen::Matrix3d axes;
-        axes.col(0) = vector(row, body->axes[0]);
-        axes.col(1) = vector(row, body->axes[1]);
-        axes.col(2) = axes.col(0).cross(axes.col(1));
+        const Eigen::Matrix3d axes = axes_of(drawn, row);
         if (!axes.allFinite()) return;  // a spot, if at least its position is finite
         add_rotation(node, Eigen::Quaterniond(axes));
       }
@@ -221,20 +219,6 @@ class Animator {
     for (const std::vector<double>& row : rows_) result.emplace_back(at(a, row), at(b, row));
     return result;
   }
-  bool touches_surface(std::size_t place) const {
-    return std::any_of(parts_.surfaces.begin(), parts_.surfaces.end(),
-                       [place](const DrawnSurface& surface) { return surface.place == place && surface.has_contact; });
-  }
-
-  /// Whether the ends keep their distance: a line between others is no part of the system.
-  bool is_rigid(const Ends& ends) const {
-    constexpr double same = 1e-6;  // of the extent, far above the error of a run
-    const auto length = [](const std::pair<Point, Point>& e) { return (e.second - e.first).norm(); };
-    return std::all_of(ends.begin(), ends.end(), [&](const std::pair<Point, Point>& e) {
-      return std::abs(length(e) - length(ends.front())) <= same * extent_;
-    });
-  }
-
   Ends ends(const DrawnLine& line) const {
     Ends result;
     for (const std::vector<double>& row : rows_) result.emplace_back(vector(row, line.a), vector(row, line.b));
@@ -265,6 +249,7 @@ class Animator {
   }
 
   const DrawnParts& parts_;
+  const Primitives& list_;
   const Rows& rows_;
   std::vector<PlacedSolids> solids_;
   Eigen::AlignedBox3d box_;
@@ -276,9 +261,9 @@ class Animator {
 
 }  // namespace
 
-Animation animation(const DrawnParts& parts, const std::vector<double>& sizes, std::vector<double> t,
+Animation animation(const DrawnParts& parts, const Primitives& primitives, std::vector<double> t,
                     const std::vector<std::vector<double>>& rows, const std::optional<std::array<double, 3>>& down) {
-  Animator animator(parts, sizes, rows);
+  Animator animator(parts, primitives, rows);
   Animation result;
   result.t = std::move(t);
   result.nodes = animator.run();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Keyframes of a motion. In: parts of a drawing, their sizes, rows of its vectors. Out: meshes of bodies, particles,
+// Keyframes of a motion. In: parts of a drawing, its primitives, rows of its vectors. Out: meshes of bodies, particles,
 // rods, springs and dampers, each with its position, rotation and length over time.
 #pragma once
 
@@ -10,8 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/drawing/parts.hpp"
-#include "analysis/drawing/view.hpp"
+#include "analysis/drawing/primitives.hpp"
 
 namespace eomgen::analysis {
 
@@ -43,7 +42,7 @@ struct Animation {
 
 /// rows: values of the vectors at each time, in the order of Drawing::outputs(). down: direction of gravity; none: E3
 /// is up, or E2 if the motion is in the plane of E1 and E2. A part whose values are not finite in some row is left out.
-Animation animation(const DrawnParts& parts, const std::vector<double>& sizes, std::vector<double> t,
+Animation animation(const DrawnParts& parts, const Primitives& primitives, std::vector<double> t,
                     const std::vector<std::vector<double>>& rows, const std::optional<std::array<double, 3>>& down);
 
 }  // namespace eomgen::analysis

@@ -311,8 +311,9 @@ void Drawing::rods() {
     for (std::uint32_t a = 0; a < model_.places.size() && !found; ++a) {
       for (std::uint32_t b = a + 1; b < model_.places.size() && !found; ++b) {
         found = distances.have(a, b, coordinates) && is_rod(k, a, b);
-        const DrawnPlace& place = parts_.places[b - 1];
+        DrawnPlace& place = parts_.places[b - 1];
         const bool linked = place.from && *place.from == static_cast<long>(a) - 1;
+        place.is_held = place.is_held || (found && linked);
         if (found && !linked) parts_.rods.push_back({static_cast<long>(a) - 1, static_cast<long>(b) - 1});
       }
     }

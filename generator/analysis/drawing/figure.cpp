@@ -11,107 +11,44 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/drawing/parts.hpp"
 #include "analysis/drawing/placed_solids.hpp"
 #include "analysis/drawing/sketch.hpp"
 #include "analysis/drawing/surfaces_at_start.hpp"
 #include "error.hpp"
 #include "lists.hpp"
 #include "reading/reading.hpp"
-#include "symbolic/evaluate.hpp"
 
 namespace eomgen::analysis {
 namespace {
 
 using Weight = Sketch::Weight;
 
-/// Drawing of two coupled wheels with parallel axes: pitch circles, and the belt over them. The page of `report` draws
-/// the same (templates/report/shapes.js). External gears rotate in opposite directions and touch between the centres. A
-/// gear in a ring gear, both on a carrier, touches outside the centres. Pulleys take the radii of disks drawn on the
-/// two bodies, otherwise a size at which the belt is visible.
-struct WheelPair {
-  std::array<Point, 2> centres, axes;
-  double ratio = 1;                          // first angular velocity over the second, about these axes
-  bool carried = false;                      // both rotate on a third body
-  std::array<std::vector<double>, 2> radii;  // of the disks drawn on them
-};
-
-constexpr int strokes = 40;  // per circle
-
-struct Wheels {
-  bool belt = false;
-  std::array<double, 2> radii{};
-};
-
-std::optional<Wheels> wheels_of(double ratio, bool carried, double distance,
-                                const std::array<std::vector<double>, 2>& drawn) {
-  const double size = std::abs(ratio);
-  if (!(distance > 0) || !(size > 0) || !std::isfinite(size)) return std::nullopt;
-  if (ratio < 0) return Wheels{false, {distance / (1 + size), distance * size / (1 + size)}};
-  if (carried) {
-    if (size == 1) return std::nullopt;
-    return Wheels{false, {distance / std::abs(size - 1), distance * size / std::abs(size - 1)}};
-  }
-  for (const double a : drawn[0]) {
-    for (const double b : drawn[1]) {
-      if (std::abs(b - size * a) < 1e-6 * b) return Wheels{true, {a, b}};
-    }
-  }
-  const double larger = 0.3 * distance;
-  return size > 1 ? Wheels{true, {larger / size, larger}} : Wheels{true, {larger, larger * size}};
-}
-
-/// Draws nothing if the axes are not parallel or no such wheels exist.
-void draw(Sketch& sketch, const WheelPair& pair) {
-  const Point axis = pair.axes[0].normalized(), other = pair.axes[1].normalized();
-  if (!axis.allFinite() || !(axis.cross(other).norm() < 1e-6)) return;
-  const Point between = pair.centres[1] - pair.centres[0], across = between - axis.dot(between) * axis;
-  const std::optional<Wheels> found =
-      wheels_of(axis.dot(other) < 0 ? -pair.ratio : pair.ratio, pair.carried, across.norm(), pair.radii);
-  if (!found) return;
-  const Point u = across.normalized(), v = axis.cross(u);
-  for (std::size_t k = 0; k < 2; ++k) {
-    std::vector<PlanePoint> ring;
-    for (int s = 0; s <= strokes; ++s) {
-      const double angle = 2 * std::numbers::pi * s / strokes;
-      ring.push_back(sketch.on_paper(pair.centres[k] + found->radii[k] * (std::cos(angle) * u + std::sin(angle) * v)));
-    }
-    sketch.path(ring, Weight::plain);
-  }
-  const double cosine = (found->radii[0] - found->radii[1]) / across.norm();
-  if (!found->belt || std::abs(cosine) >= 1) return;
-  for (const double side : {1.0, -1.0}) {
-    const Point e = cosine * u + side * std::sqrt(1 - cosine * cosine) * v;
-    sketch.line(Point(pair.centres[0] + found->radii[0] * e), Point(pair.centres[1] + found->radii[1] * e),
-                Weight::plain);
-  }
-}
-
+constexpr int strokes = 40;                 // per circle
 constexpr std::size_t most_strokes = 4000;  // more strokes do not fit a figure
 constexpr double axis_length = 9;           // mm
 constexpr double seen_sideways = 0.2;       // ratio below which a length counts as seen end-on
 constexpr int arc_strokes = 16;
 constexpr double least_turn = 0.02;  // rad
 
-struct Rod {  // between places; -1: the origin
-  long from, to;
-};
-
 class Drawer {
  public:
   Drawer(mechanics::Mechanics& mechanics, const run::Scene& scene)
-      : m_(mechanics), model_(*mechanics.model), scene_(scene), drawing_(mechanics), parts_(drawing_.parts()) {}
+      : m_(mechanics),
+        model_(*mechanics.model),
+        scene_(scene),
+        drawing_(mechanics),
+        parts_(drawing_.parts()),
+        list_(primitives(drawing_, *mechanics.dag, scene, {})),
+        states_(sampled_values(drawing_, *mechanics.dag, scene, 0)),
+        at_start_(states_.front()) {}
 
   std::optional<print::Figure> draw() {
     if (parts_.places.empty()) return std::nullopt;
-    at_start_ = values(scene_.q);
     if (!std::all_of(at_start_.begin(), at_start_.end(), [](double x) { return std::isfinite(x); })) {
       throw Error("derive", {}, "a position has no finite value at the start of the scene",
                   "start the default scene where every position has one");
     }
-    sizes_ = sizes_of(drawing_, *m_.dag, scene_.parameters);
-    look_elsewhere();
-    solids_ = placed_solids(parts_, sizes_, at_start_);
+    solids_ = placed_solids(parts_, list_, at_start_);
     std::optional<Point> down;
     if (const auto g = gravity_direction(m_, scene_.parameters)) down = Point(g->data());
     const View view(points_of_view(), down);
@@ -122,11 +59,11 @@ class Drawer {
     axes(sketch);
     for (const SurfaceLine& line : bound) sketch.curve(line.points, line.edge ? Weight::plain : Weight::fine);
     for (const DrawnContact& contact : parts_.contacts) ground(sketch, contact);
-    for (const Rod& rod : links()) link(sketch, rod);
+    for (const DrawnLink& drawn : list_.links) link(sketch, drawn);
     for (const PlacedSolids& placed : solids_) {
       for (const Solid& solid : placed.solids) sketch.solid(solid, placed.world);
     }
-    for (const DrawnCoupling& coupling : parts_.couplings) analysis::draw(sketch, wheels(coupling));
+    for (const DrawnWheels& pair : list_.wheels) wheels(sketch, pair);
     for (const DrawnLine& spring : parts_.springs) sketch.spring(point(spring.a), point(spring.b));
     for (const DrawnLine& damper : parts_.dampers) sketch.damper(point(damper.a), point(damper.b));
     for (const DrawnJoint& joint : parts_.joints) {
@@ -149,23 +86,9 @@ class Drawer {
   }
 
  private:
-  /// Values of all vectors at these coordinates.
-  std::vector<double> values(const std::vector<double>& q) const {
-    return symbolic::evaluate(*m_.dag, drawing_.expressions(), [&](const symbolic::Symbol& s) -> double {
-      switch (s.kind) {
-        case SymbolKind::time: return scene_.t0;
-        case SymbolKind::coordinate:
-          return s.order == 0 ? q[s.index] : s.order == 1 ? scene_.qdot[s.index] : std::nan("");
-        case SymbolKind::parameter: return scene_.parameters[s.index];
-        default: return s.kind == SymbolKind::integral ? 0 : std::nan("");  // integrals are 0 at the start
-      }
-    });
-  }
   static Point at(const std::vector<double>& values, std::size_t i) { return Point(values.data() + i); }
   Point point(std::size_t i) const { return at(at_start_, i); }
-  Point foot(const DrawnPlace& place) const {
-    return *place.from < 0 ? Point(Point::Zero()) : point(parts_.places[static_cast<std::size_t>(*place.from)].at);
-  }
+  Point foot(const DrawnPlace& place) const { return at_place(*place.from); }
 
   std::vector<std::size_t> spots() const {
     std::vector<std::size_t> result = mapped(parts_.places, &DrawnPlace::at);
@@ -178,23 +101,13 @@ class Drawer {
   }
   bool has_origin() const {
     return std::any_of(parts_.places.begin(), parts_.places.end(), [](const DrawnPlace& p) { return p.from == -1; }) ||
-           std::any_of(parts_.rods.begin(), parts_.rods.end(), [](const DrawnRod& rod) { return rod.a == -1; });
+           std::any_of(list_.links.begin(), list_.links.end(), [](const DrawnLink& link) { return link.from == -1; });
   }
 
-  /// Values at two other states. They show which positions leave the plane and which lengths change.
-  void look_elsewhere() {
-    for (int state = 1; state < 3; ++state) {
-      std::vector<double> q = scene_.q;
-      for (std::size_t i = 0; i < q.size(); ++i)
-        q[i] += state * (0.31 + 0.17 * std::sin(static_cast<double>(i + 1))) * (1 + std::abs(q[i]));
-      elsewhere_.push_back(values(q));
-    }
-  }
   std::vector<Point> points_of_view() const {
     std::vector<Point> result;
     for (const std::size_t i : spots()) {
-      result.push_back(point(i));
-      for (const std::vector<double>& there : elsewhere_) {
+      for (const std::vector<double>& there : states_) {
         if (at(there, i).allFinite()) result.push_back(at(there, i));
       }
     }
@@ -260,57 +173,37 @@ class Drawer {
     sketch.dot(sketch.on_paper(point(contact.at)), 1, true);
   }
 
-  /// Lines to places, and rods between two places.
-  std::vector<Rod> links() const {
-    std::vector<Rod> result;
-    for (std::size_t i = 0; i < parts_.places.size(); ++i) {
-      if (parts_.places[i].from) result.push_back({*parts_.places[i].from, static_cast<long>(i)});
-    }
-    for (const DrawnRod& rod : parts_.rods) result.push_back({rod.a, rod.b});
-    return result;
+  Point at_place(long place) const {
+    return place < 0 ? Point(Point::Zero()) : point(parts_.places[static_cast<std::size_t>(place)].at);
   }
-  Point at_place(const std::vector<double>& there, long place) const {
-    return place < 0 ? Point(Point::Zero()) : at(there, parts_.places[static_cast<std::size_t>(place)].at);
-  }
-  /// A rod or thread, unless a spring is drawn there. It is dashed if its length changes.
-  void link(Sketch& sketch, const Rod& rod) const {
-    const Point from = at_place(at_start_, rod.from), here = at_place(at_start_, rod.to);
-    const auto near = [](const Point& a, const Point& b) { return (a - b).norm() < 1e-9 * (1 + a.norm()); };
-    const bool sprung = std::any_of(parts_.springs.begin(), parts_.springs.end(), [&](const DrawnLine& spring) {
-      const Point a = point(spring.a), b = point(spring.b);
-      return (near(a, from) && near(b, here)) || (near(b, from) && near(a, here));
-    });
-    if (sprung) return;
-    const double length = (here - from).norm();
-    bool rigid = std::none_of(parts_.surfaces.begin(), parts_.surfaces.end(), [&](const DrawnSurface& surface) {
-      return (surface.has_contact || surface.is_moving) && static_cast<long>(surface.place) == rod.to;
-    });
-    for (const std::vector<double>& there : elsewhere_) {
-      const double other = (at_place(there, rod.to) - at_place(there, rod.from)).norm();
-      rigid = rigid && !(std::abs(other - length) > 1e-6 * length);
-    }
-    // The other states ignore constraints that are not eliminated.
-    const bool held = std::any_of(parts_.rods.begin(), parts_.rods.end(),
-                                  [&](const DrawnRod& other) { return other.a == rod.from && other.b == rod.to; });
-    if (rigid || held)
-      sketch.line(from, here, Weight::strong);
+  void link(Sketch& sketch, const DrawnLink& drawn) const {
+    const Point from = at_place(drawn.from), to = at_place(drawn.to);
+    if (drawn.is_rod)
+      sketch.line(from, to, Weight::strong);
     else
-      sketch.dashes(sketch.on_paper(from), sketch.on_paper(here));
+      sketch.dashes(sketch.on_paper(from), sketch.on_paper(to));
   }
 
-  WheelPair wheels(const DrawnCoupling& coupling) const {
-    WheelPair pair;
+  void wheels(Sketch& sketch, const DrawnWheels& pair) const {
+    const Point axis = point(pair.axis).normalized();
+    const std::array<Point, 2> centres{at_place(static_cast<long>(pair.of[0])),
+                                       at_place(static_cast<long>(pair.of[1]))};
+    const Point between = centres[1] - centres[0], u = (between - axis.dot(between) * axis).normalized(),
+                v = axis.cross(u);
+    const auto rim = [&](std::size_t k, double cosine, double sine) -> Point {
+      return centres[k] + list_.size_values[pair.radii[k]] * (cosine * u + sine * v);
+    };
     for (std::size_t k = 0; k < 2; ++k) {
-      pair.centres[k] = point(parts_.places[coupling.of[k]].at);
-      pair.axes[k] = point(coupling.axes[k]);
-      for (const DrawnShape& shape : parts_.shapes) {
-        if (shape.place == coupling.of[k] && (shape.kind == "disk" || shape.kind == "cylinder"))
-          pair.radii[k].push_back(sizes_[shape.lengths[0]]);
+      std::vector<PlanePoint> ring;
+      for (int s = 0; s <= strokes; ++s) {
+        const double angle = 2 * std::numbers::pi * s / strokes;
+        ring.push_back(sketch.on_paper(rim(k, std::cos(angle), std::sin(angle))));
       }
+      sketch.path(ring, Weight::plain);
     }
-    pair.ratio = sizes_[coupling.ratio];
-    pair.carried = coupling.carried;
-    return pair;
+    if (!pair.belt) return;
+    const double cosine = list_.size_values[*pair.belt], sine = std::sqrt(1 - cosine * cosine);
+    for (const double side : {sine, -sine}) sketch.line(rim(0, cosine, side), rim(1, cosine, side), Weight::plain);
   }
 
   void spot(Sketch& sketch, std::size_t i) const {
@@ -354,7 +247,7 @@ class Drawer {
     for (int k = 0; k <= arc_strokes; ++k) {
       std::vector<double> q = scene_.q;
       q[coordinate] *= static_cast<double>(k) / arc_strokes;
-      const std::vector<double> there = values(q);
+      const std::vector<double> there = values_at(drawing_, *m_.dag, scene_, q);
       const Point from =
           *place.from < 0 ? Point(Point::Zero()) : at(there, parts_.places[static_cast<std::size_t>(*place.from)].at);
       const PlanePoint along = sketch.on_paper(at(there, place.at)) - sketch.on_paper(from);
@@ -383,8 +276,9 @@ class Drawer {
   const run::Scene& scene_;
   Drawing drawing_;
   const DrawnParts& parts_;
-  std::vector<double> at_start_, sizes_;
-  std::vector<std::vector<double>> elsewhere_;
+  const Primitives list_;
+  const std::vector<std::vector<double>> states_;
+  const std::vector<double>& at_start_;
   std::vector<PlacedSolids> solids_;
 };
 

@@ -77,12 +77,11 @@ std::size_t Drawing::vector(const Vec3& value) {
 
 std::size_t Drawing::vector(model::NodeId value) { return vector(mechanics::lower_vector(mechanics_, value)); }
 
-std::size_t Drawing::size(model::NodeId value) {
+/// -1 if the value depends on anything else.
+Ref Drawing::in_parameters(model::NodeId value) {
   symbolic::Dag& dag = *mechanics_.dag;
-  Ref lowered = value == model::no_node ? dag.integer(-1) : mechanics::lower_scalar(mechanics_, value);
-  if (!depends_on_parameters_only(dag, lowered)) lowered = dag.integer(-1);
-  sizes_.push_back(lowered);
-  return sizes_.size() - 1;
+  const Ref lowered = value == model::no_node ? dag.integer(-1) : mechanics::lower_scalar(mechanics_, value);
+  return depends_on_parameters_only(dag, lowered) ? lowered : dag.integer(-1);
 }
 
 void Drawing::places() {
@@ -107,8 +106,8 @@ void Drawing::bodies() {
     DrawnBody drawn{};
     drawn.place = body.place - 1;
     for (std::size_t k = 0; k < 2; ++k) drawn.axes[k] = vector(frame.stages.back().e[k]);
-    for (std::size_t i = 0; i < 9; ++i) drawn.inertia[i] = size(body.inertia[i / 3][i % 3]);
-    drawn.mass = size(body.mass);
+    for (std::size_t i = 0; i < 9; ++i) drawn.inertia[i] = in_parameters(body.inertia[i / 3][i % 3]);
+    drawn.mass = in_parameters(body.mass);
     parts_.bodies.push_back(drawn);
   }
 }
@@ -167,30 +166,17 @@ void Drawing::couplings() {
     const Ref ratio = mechanics::lower_scalar(mechanics_, coupled.ratio);
     if (!a || !b || !depends_on_parameters_only(*mechanics_.dag, ratio)) continue;
     const std::size_t n = vector(coupled.axes[0]), m = vector(coupled.axes[1]);
-    parts_.couplings.push_back({constraint.name, {*a, *b}, {n, m}, size(coupled.ratio), coupled.frames[2] > 0});
+    parts_.couplings.push_back({{*a, *b}, {n, m}, ratio, coupled.frames[2] > 0});
   }
 }
 
 void Drawing::shapes() {
   for (const model::ShapeSpec& drawn : model_.drawn) {
     DrawnShape shape{drawn.place - 1, drawn.kind, {}, drawn.axis, {}, drawn.faces};
-    for (const model::NodeId length : drawn.lengths) shape.lengths.push_back(size(length));
-    for (const model::NodeId x : drawn.at) shape.at.push_back(size(x));
+    for (const model::NodeId length : drawn.lengths) shape.lengths.push_back(in_parameters(length));
+    for (const model::NodeId x : drawn.at) shape.at.push_back(in_parameters(x));
     parts_.shapes.push_back(std::move(shape));
   }
-}
-
-std::vector<double> sizes_of(const Drawing& drawing, const symbolic::Dag& dag, const std::vector<double>& parameters) {
-  std::vector<double> result;
-  const auto lookup = [&](const symbolic::Symbol& s) -> cln::cl_R { return numeric::exact(parameters[s.index]); };
-  for (const Ref size : drawing.sizes()) {
-    try {
-      result.push_back(cln::double_approx(symbolic::evaluate(dag, {size}, lookup, digits)[0]));
-    } catch (const std::exception&) {
-      result.push_back(-1);  // unknown, as if it depended on more than parameters
-    }
-  }
-  return result;
 }
 
 std::optional<std::array<double, 3>> gravity_direction(mechanics::Mechanics& mechanics,

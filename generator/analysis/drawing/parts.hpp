@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Parts of the drawing of a model, on a page and in a figure. In: its mechanics. Out: vectors (positions, body axes,
 // ends of springs, points of joints and contacts, axes of gears, constrained coordinates), both as expressions and as
-// outputs for the code of a page; and for each part the indices of its numbers among them.
+// outputs for the code of a page; and for each part the indices of its numbers among them. primitives.hpp decides which
+// of them are drawn, and how.
 #pragma once
 
 #include <array>
@@ -18,19 +19,20 @@ namespace eomgen::analysis {
 using symbolic::Ref;
 using symbolic::SymbolKind;
 
-/// Parts of a drawing. They refer to a vector by the index of its first component in the outputs, to a length by its
-/// index in the sizes, and to a place by its index in DrawnParts::places.
+/// Parts of a drawing. They refer to a vector by the index of its first component in the outputs, and to a place by its
+/// index in DrawnParts::places. Masses, moments, lengths and ratios are expressions in parameters.
 struct DrawnPlace {
   std::string name;
   const char* kind;          // "particle", "body", "point"
   std::optional<long> from;  // start of the line that leads to it: a place, or -1 for the origin; none: no line
   std::size_t at;            // a vector: its position
+  bool is_held = false;      // a constraint holds it at a distance from `from`
 };
 struct DrawnBody {
   std::size_t place;
-  std::array<std::size_t, 2> axes;  // vectors: the first two body axes
-  std::size_t mass;
-  std::array<std::size_t, 9> inertia;  // 3 x 3, row-major
+  std::array<std::size_t, 2> axes;       // vectors: the first two body axes
+  symbolic::Ref mass;                    // -1 if it depends on more than parameters; so do the moments
+  std::array<symbolic::Ref, 9> inertia;  // 3 x 3, row-major
 };
 struct DrawnLine {
   std::size_t a, b;  // vectors: its ends
@@ -69,18 +71,17 @@ struct DrawnRod {
 };
 /// A gear or belt between two bodies that rotate about their own axes.
 struct DrawnCoupling {
-  std::string name;
   std::array<std::size_t, 2> of;    // places
   std::array<std::size_t, 2> axes;  // unit vectors
-  std::size_t ratio;                // a size: first angular velocity over the second
+  symbolic::Ref ratio;              // first angular velocity over the second
   bool carried = false;             // both rotate on a third body
 };
 struct DrawnShape {
   std::size_t place;
-  std::string kind;                  // as in [draw]
-  std::vector<std::size_t> lengths;  // sizes
+  std::string kind;  // as in [draw]
+  std::vector<symbolic::Ref> lengths;
   std::size_t axis;
-  std::vector<std::size_t> at;                    // sizes; empty: at the centre of the body
+  std::vector<symbolic::Ref> at;                  // empty: at the centre of the body
   std::vector<std::vector<std::uint32_t>> faces;  // of a mesh
 };
 struct DrawnParts {
@@ -106,16 +107,13 @@ class Drawing {
   const std::vector<symbolic::Ref>& expressions() const { return expressions_; }
   /// Adds the outputs that a system of equations does not have already.
   void add_outputs(system::EquationSystem& system) const;
-  /// Sizes as expressions in parameters: masses and inertias of bodies, lengths of shapes. A size that depends on
-  /// anything else is unknown and has a negative value.
-  const std::vector<symbolic::Ref>& sizes() const { return sizes_; }
   const DrawnParts& parts() const { return parts_; }
 
  private:
   std::size_t position(std::uint32_t place);
   std::size_t vector(const symbolic::Vec3& value);
   std::size_t vector(model::NodeId value);
-  std::size_t size(model::NodeId value);
+  symbolic::Ref in_parameters(model::NodeId value);
   void places();
   void bodies();
   void forces();
@@ -145,12 +143,8 @@ class Drawing {
   std::vector<std::string> outputs_;
   std::vector<symbolic::Ref> expressions_;
   std::vector<system::Output> own_;
-  std::vector<symbolic::Ref> sizes_;
   DrawnParts parts_;
 };
-
-/// Evaluates the sizes of a drawing at parameter values. Undefined sizes are -1.
-std::vector<double> sizes_of(const Drawing& drawing, const symbolic::Dag& dag, const std::vector<double>& parameters);
 
 /// Returns the direction of uniform gravity; nullopt if there is none.
 std::optional<std::array<double, 3>> gravity_direction(mechanics::Mechanics& mechanics,

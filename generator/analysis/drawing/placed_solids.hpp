@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Solids with their positions. In: parts of a drawing, their sizes, values of its vectors. Out: solids of bodies and of
-// particles with a shape in [draw]; the axes of a particle are the fixed ones.
+// Solids with their positions. In: the drawn solids of places, their sizes, values of vectors. Out: numbers.
 #pragma once
 
 #include <functional>
 #include <vector>
 
-#include "analysis/drawing/solids.hpp"
+#include "analysis/drawing/primitives.hpp"
 
 namespace eomgen::analysis {
 
@@ -16,7 +15,11 @@ struct PlacedSolids {
   std::function<Point(const Point&)> world;  // transformation from body axes to space
 };
 
-std::vector<PlacedSolids> placed_solids(const DrawnParts& parts, const std::vector<double>& sizes,
+/// Axes of drawn solids as columns.
+Eigen::Matrix3d axes_of(const DrawnSolids& drawn, const std::vector<double>& values);
+
+/// One entry for each of `primitives.solids`.
+std::vector<PlacedSolids> placed_solids(const DrawnParts& parts, const Primitives& primitives,
                                         const std::vector<double>& values);
 
 }  // namespace eomgen::analysis

@@ -23,13 +23,13 @@ constexpr std::size_t largest_script = 400000;  // bytes; longer code takes too 
 
 class Live {
  public:
-  Live(const pipeline::Simulation& simulation, const Drawing& drawing, const std::vector<std::string>& outputs,
+  Live(const pipeline::Simulation& simulation, const std::vector<Ref>& sizes, const std::vector<std::string>& outputs,
        const std::set<std::string>& set)
       : s_(simulation),
         derived_(*simulation.derived),
         m_(derived_.mechanics),
         dag_(*m_.dag),
-        drawing_(drawing),
+        sizes_(sizes),
         outputs_(outputs),
         set_(set) {}
 
@@ -159,7 +159,7 @@ class Live {
       for (const model::NodeId id : {sample.every, sample.offset})
         periods.push_back(id == model::no_node ? dag_.zero() : mechanics::lower_scalar(m_, id));
     }
-    return function("setup", {{"sizes", drawing_.sizes()}, {"periods", periods}});
+    return function("setup", {{"sizes", sizes_}, {"periods", periods}});
   }
 
   /// Inputs of the scene over time.
@@ -236,7 +236,7 @@ class Live {
     start.inputs = model.inputs.size();
     start.constraints = s_.program.active_constraints;
     start.event_functions = s_.program.event_count();
-    start.sizes = drawing_.sizes().size();
+    start.sizes = sizes_.size();
     return start;
   }
 
@@ -244,16 +244,16 @@ class Live {
   pipeline::DerivedModel& derived_;
   mechanics::Mechanics& m_;
   symbolic::Dag& dag_;
-  const Drawing& drawing_;
+  const std::vector<Ref>& sizes_;
   const std::vector<std::string>& outputs_;
   const std::set<std::string>& set_;
 };
 
 }  // namespace
 
-LiveModel live_model(const pipeline::Simulation& simulation, const Drawing& drawing,
+LiveModel live_model(const pipeline::Simulation& simulation, const std::vector<Ref>& sizes,
                      const std::vector<std::string>& outputs, const std::set<std::string>& set) {
-  return Live(simulation, drawing, outputs, set).run();
+  return Live(simulation, sizes, outputs, set).run();
 }
 
 }  // namespace eomgen::analysis

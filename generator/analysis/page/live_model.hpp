@@ -72,9 +72,9 @@ struct LiveModel {
   bool has_contacts() const { return !start.contacts.empty() || !start.contact_set.empty(); }
 };
 
-/// `outputs`: names in the order of the array that the page draws and plots from. `set`: parameters and initial values
-/// that the command line set to numbers.
-LiveModel live_model(const pipeline::Simulation& simulation, const Drawing& drawing,
+/// `sizes`: expressions in parameters. `outputs`: names in the order of the array that the page draws and plots from.
+/// `set`: parameters and initial values that the command line set to numbers.
+LiveModel live_model(const pipeline::Simulation& simulation, const std::vector<symbolic::Ref>& sizes,
                      const std::vector<std::string>& outputs, const std::set<std::string>& set);
 
 }  // namespace eomgen::analysis

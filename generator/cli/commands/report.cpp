@@ -8,6 +8,7 @@
 #include <set>
 
 #include "analysis/drawing/forces.hpp"
+#include "analysis/drawing/primitives.hpp"
 #include "analysis/equations.hpp"
 #include "analysis/page/live_model.hpp"
 #include "analysis/page/surface_code.hpp"
@@ -262,7 +263,9 @@ int execute(const Options& options, const CommonOptions& common) {
   const Json run = RunReport{simulation, true}.json();
   std::set<std::string> set;
   for (const auto& [name, value] : request.overrides.values) set.insert(name);
-  const analysis::LiveModel live = analysis::live_model(simulation, *drawing, outputs, set);
+  const analysis::Primitives primitives = analysis::primitives(*drawing, *simulation.derived->mechanics.dag,
+                                                               simulation.scene, recorded.values(drawing->outputs()));
+  const analysis::LiveModel live = analysis::live_model(simulation, primitives.sizes, outputs, set);
   const analysis::SurfaceCode surfaces = analysis::surface_code(simulation, *drawing);
   const std::string title = model.title.empty() ? model.id : model.title;
   Html html, plots, rest;
@@ -273,7 +276,7 @@ int execute(const Options& options, const CommonOptions& common) {
   std::string motion;
   std::size_t taken = 0;
   for (bool coarser = *request.rows < most_rows;; coarser = true) {
-    Json moving = recorded.json(simulation, *drawing, *forces, live, outputs, curves);
+    Json moving = recorded.json(simulation, *drawing, primitives, *forces, live, outputs, curves);
     if (!moving.is_null()) moving["kept"] = kept;
     motion = moving.is_null() ? "" : serialised(moving);
     plots = Html();

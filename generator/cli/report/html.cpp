@@ -21,7 +21,6 @@
 #include "cli/report_skeletons/guards_js.hpp"
 #include "cli/report_skeletons/integrator_js.hpp"
 #include "cli/report_skeletons/linear_js.hpp"
-#include "cli/report_skeletons/links_js.hpp"
 #include "cli/report_skeletons/main_js.hpp"
 #include "cli/report_skeletons/motion_js.hpp"
 #include "cli/report_skeletons/page_css.hpp"
@@ -33,7 +32,7 @@
 #include "cli/report_skeletons/resets_js.hpp"
 #include "cli/report_skeletons/results_js.hpp"
 #include "cli/report_skeletons/scene_js.hpp"
-#include "cli/report_skeletons/shapes_js.hpp"
+#include "cli/report_skeletons/solids_js.hpp"
 #include "cli/report_skeletons/solved_contacts_js.hpp"
 #include "cli/report_skeletons/surfaces_js.hpp"
 #include "cli/report_skeletons/transitions_js.hpp"
@@ -106,10 +105,9 @@ std::string render_page(const PageParts& parts) {
   if (parts.has_contacts)
     add({report::contact_search_js, report::contacts_js, report::friction_problem_js, report::admissible_forces_js,
          report::contact_forces_js, report::transitions_js, report::solved_contacts_js, report::guards_js});
-  add({report::integrator_js, report::motion_js, report::address_js, report::shapes_js, report::camera_js,
-       report::pencil_js, report::links_js, report::surfaces_js, report::scene_js, report::plots_js, report::phase_js,
-       report::drag_js, report::controls_js, report::fit_js, report::results_js, report::gif_js, report::recorder_js,
-       report::main_js});
+  add({report::integrator_js, report::motion_js, report::address_js, report::solids_js, report::camera_js,
+       report::pencil_js, report::surfaces_js, report::scene_js, report::plots_js, report::phase_js, report::drag_js,
+       report::controls_js, report::fit_js, report::results_js, report::gif_js, report::recorder_js, report::main_js});
   all.set("scripts", scripts);
   all.set("moving",
           parts.motion.empty() ? kainjow::mustache::data::type::bool_false : kainjow::mustache::data::type::bool_true);

@@ -8,10 +8,19 @@
 #include <eom/output/decimal.hpp>
 #include <eom/output/svg_plot.hpp>
 
-#include "analysis/drawing/parts.hpp"
-
 namespace eomgen::cli {
 namespace {
+
+constexpr double least_seconds = 4, most_seconds = 20;  // duration of an animation, for any time span of the run
+constexpr int digits_of_states = 10, digits_of_screens = 6;
+
+// Rounds to the digits needed, to save bytes.
+double shortened(double x, int digits) {
+  double result = 0;
+  const std::string text = std::isfinite(x) ? fmt::format("{:.{}g}", x, digits) : "0";
+  eom::decimals::read_decimal(text, result);
+  return result;
+}
 
 // JSON for the script of a page: parts of the drawing, forces, initial data of the integrator.
 
@@ -38,22 +47,14 @@ Json line(const analysis::DrawnLine& l) { return EOMGEN_MEMBERS(l, a, b); }
 Json to_json(const analysis::DrawnParts& parts, const model::Model& model, const run::Scene& scene) {
   Json result;
   result["places"] =
-      list_of(parts.places, [](const analysis::DrawnPlace& p) { return EOMGEN_MEMBERS(p, name, kind, from, at); });
-  result["bodies"] =
-      list_of(parts.bodies, [](const analysis::DrawnBody& b) { return EOMGEN_MEMBERS(b, place, axes, mass, inertia); });
+      list_of(parts.places, [](const analysis::DrawnPlace& p) { return EOMGEN_MEMBERS(p, name, kind, at); });
   result["dampers"] = list_of(parts.dampers, line);
   result["springs"] = list_of(parts.springs, line);
   result["joints"] = list_of(parts.joints, [](const analysis::DrawnJoint& j) -> Json {
-    return {{"name", j.name}, {"at", j.at}, {"of", Json::array({or_null(j.of[0]), or_null(j.of[1])})}};
+    return {{"at", j.at}, {"of", Json::array({or_null(j.of[0]), or_null(j.of[1])})}};
   });
   result["contacts"] = list_of(
-      parts.contacts, [](const analysis::DrawnContact& c) { return EOMGEN_MEMBERS(c, name, of, at, tangents, foot); });
-  result["couplings"] = list_of(parts.couplings, [](const analysis::DrawnCoupling& c) {
-    return EOMGEN_MEMBERS(c, name, of, axes, ratio, carried);
-  });
-  result["shapes"] = list_of(parts.shapes, [](const analysis::DrawnShape& s) {
-    return EOMGEN_MEMBERS(s, place, kind, lengths, axis, at, faces);
-  });
+      parts.contacts, [](const analysis::DrawnContact& c) { return EOMGEN_MEMBERS(c, name, at, tangents, foot); });
   std::size_t count = 0;
   result["surfaces"] = list_of(parts.surfaces, [&](const analysis::DrawnSurface& s) -> Json {
     const auto of_unit = [&](const char* unit) {
@@ -76,14 +77,56 @@ Json to_json(const analysis::DrawnParts& parts, const model::Model& model, const
             {"lower", bounds(lower)},
             {"upper", bounds(upper)},
             {"integrals", or_null(s.integrals)},
-            {"touched", s.has_contact},
             {"reshapes", s.changes_shape},
             {"moves", s.is_moving},
             {"equations", "surface_" + std::to_string(++count)}};
   });
   result["untried"] = parts.rods_incomplete;
-  result["rods"] = list_of(parts.rods, [](const analysis::DrawnRod& r) { return Json::array({r.a, r.b}); });
   return result;
+}
+
+Json vector(const analysis::Point& r) { return Json::array({r.x(), r.y(), r.z()}); }
+
+Json to_json(const analysis::Polyhedron& p) {
+  return {{"vertices", list_of(p.vertices,
+                               [](const analysis::Point& c) {
+                                 return list_of(std::vector<double>(c.begin(), c.end()),
+                                                [](double x) -> Json { return shortened(x, digits_of_states); });
+                               })},
+          {"faces", p.faces},
+          {"smooth", p.smooth}};
+}
+
+Json to_json(const analysis::DrawnSolid& s) {
+  Json result = Json::object();
+  if (s.at) result["at"] = *s.at;
+  if (s.ball) result["ball"] = *s.ball;
+  if (s.tip) result["tip"] = *s.tip;
+  if (s.polyhedron != nullptr) result.update({{"polyhedron", s.polyhedron->name}, {"edges", s.edges}});
+  if (!s.points.empty()) result.update({{"points", s.points}, {"faces", s.faces}, {"open", s.open}});
+  return result;
+}
+
+/// Adds the decided primitives, and the polyhedra of their solids.
+void add_primitives(Json& parts, const analysis::Primitives& primitives) {
+  parts["polyhedra"] = Json::object();
+  for (const analysis::DrawnSolids& drawn : primitives.solids) {
+    for (const analysis::DrawnSolid& s : drawn.list) {
+      if (s.polyhedron != nullptr) parts["polyhedra"][s.polyhedron->name] = to_json(*s.polyhedron);
+    }
+  }
+  parts["solids"] = list_of(primitives.solids, [](const analysis::DrawnSolids& s) -> Json {
+    return {{"place", s.place},
+            {"axes", or_null(s.axes)},
+            {"list", list_of(s.list, [](const analysis::DrawnSolid& one) { return to_json(one); })}};
+  });
+  parts["links"] =
+      list_of(primitives.links, [](const analysis::DrawnLink& l) { return EOMGEN_MEMBERS(l, from, to, is_rod); });
+  parts["supports"] = list_of(primitives.supports, [](const analysis::DrawnSupport& s) -> Json {
+    return {{"at", or_null(s.at)}, {"toward", vector(s.toward)}};
+  });
+  parts["wheels"] = list_of(primitives.wheels,
+                            [](const analysis::DrawnWheels& w) { return EOMGEN_MEMBERS(w, of, axis, radii, belt); });
 }
 
 /// Adds the arrows of forces, and the names of forces without a vector, to the parts.
@@ -172,17 +215,6 @@ Json to_json(const analysis::LiveStart& start) {
           {"size_count", start.sizes}};
 }
 
-constexpr double least_seconds = 4, most_seconds = 20;  // duration of an animation, for any time span of the run
-constexpr int digits_of_states = 10, digits_of_screens = 6;
-
-// Rounds to the digits needed, to save bytes.
-double shortened(double x, int digits) {
-  double result = 0;
-  const std::string text = std::isfinite(x) ? fmt::format("{:.{}g}", x, digits) : "0";
-  eom::decimals::read_decimal(text, result);
-  return result;
-}
-
 }  // namespace
 
 void RecordedMotion::row(double t, std::span<const double> values) {
@@ -224,21 +256,25 @@ std::string RecordedMotion::plots(const std::vector<Panel>& panels) const {
   return result;
 }
 
-Json RecordedMotion::rows(const std::vector<std::string>& names, int digits) const {
-  std::vector<std::vector<double>> columns;
-  for (const std::string& name : names) columns.push_back(column(name));
-  Json result = Json::array();
-  for (std::size_t k = 0; k < t_.size(); ++k) {
-    Json row = Json::array();
-    for (const std::vector<double>& values : columns) row.push_back(values.empty() ? 0 : shortened(values[k], digits));
-    result.push_back(std::move(row));
+std::vector<std::vector<double>> RecordedMotion::values(const std::vector<std::string>& names) const {
+  std::vector<std::vector<double>> result(t_.size());
+  for (const std::string& name : names) {
+    const std::vector<double> values = column(name);
+    for (std::size_t k = 0; k < t_.size(); ++k) result[k].push_back(values.empty() ? 0 : values[k]);
   }
   return result;
 }
 
+Json RecordedMotion::rows(const std::vector<std::string>& names, int digits) const {
+  return list_of(values(names), [digits](const std::vector<double>& row) {
+    return list_of(row, [digits](double x) -> Json { return shortened(x, digits); });
+  });
+}
+
 Json RecordedMotion::json(const pipeline::Simulation& simulation, const analysis::Drawing& drawing,
-                          const analysis::DrawnForces& forces, const analysis::LiveModel& live,
-                          const std::vector<std::string>& outputs, const std::vector<Panel>& panels) const {
+                          const analysis::Primitives& primitives, const analysis::DrawnForces& forces,
+                          const analysis::LiveModel& live, const std::vector<std::string>& outputs,
+                          const std::vector<Panel>& panels) const {
   if (t_.size() < 2) return nullptr;
   const model::Model& model = simulation.derived->model;
   const std::vector<std::string> states = pipeline::state_names(*simulation.derived);
@@ -256,13 +292,12 @@ Json RecordedMotion::json(const pipeline::Simulation& simulation, const analysis
     curves.push_back({{"title", panel.title}, {"of", of}});
   }
   for (const run::RunEvent& event : simulation.result.events) events.push_back({{"t", event.t}, {"name", event.name}});
-  const symbolic::Dag& dag = *simulation.derived->mechanics.dag;
-  for (const double size : analysis::sizes_of(drawing, dag, simulation.scene.parameters))
-    sizes.push_back(shortened(size, digits_of_states));
+  for (const double size : primitives.size_values) sizes.push_back(shortened(size, digits_of_states));
   const double span = t_.back() - t_.front();
   const auto down = analysis::gravity_direction(simulation.derived->mechanics, simulation.scene.parameters);
   const bool is_live = !live.script.empty();
   Json parts = to_json(drawing.parts(), model, simulation.scene);
+  add_primitives(parts, primitives);
   add_forces(parts, forces);
   return {{"t", times},
           {"x", is_live ? rows(states, digits_of_states) : Json(nullptr)},

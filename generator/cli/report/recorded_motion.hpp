@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/drawing/forces.hpp"
+#include "analysis/drawing/primitives.hpp"
 #include "analysis/page/live_model.hpp"
 #include "cli/json.hpp"
 #include "cli/panels.hpp"
@@ -22,14 +23,18 @@ class RecordedMotion {
   /// Drops every second row and keeps the last one.
   void drop_every_second_row();
 
+  /// Rows with these values; 0 of names that the run does not have.
+  std::vector<std::vector<double>> values(const std::vector<std::string>& names) const;
+
   /// Panels as SVG, for pages without scripts and for print.
   std::string plots(const std::vector<Panel>& panels) const;
 
   /// Data for the page's script; null if nothing can be drawn or integrated. With a live model it contains only the
   /// states, from which the script computes the rest; otherwise all `outputs`.
   Json json(const pipeline::Simulation& simulation, const analysis::Drawing& drawing,
-            const analysis::DrawnForces& forces, const analysis::LiveModel& live,
-            const std::vector<std::string>& outputs, const std::vector<Panel>& panels) const;
+            const analysis::Primitives& primitives, const analysis::DrawnForces& forces,
+            const analysis::LiveModel& live, const std::vector<std::string>& outputs,
+            const std::vector<Panel>& panels) const;
 
  private:
   std::vector<double> column(const std::string& name) const;
