@@ -10,6 +10,7 @@
 #include "analysis/steady_search.hpp"
 #include "conservation/conservative.hpp"
 #include "derive/formulations/lagrange.hpp"
+#include "pipeline/certificate_cache.hpp"
 #include "pipeline/pipeline.hpp"
 #include "print/article.hpp"
 #include "reading/forms.hpp"
@@ -41,9 +42,18 @@ std::vector<print::ConservedFinding> conserved_of(const Mechanics& m, const Disp
   return result;
 }
 
-void check_against_oracle(Mechanics& m, const DisplayForm& one, const DisplayForm& two, std::uint64_t seed,
-                          print::Findings& findings) {
-  const work::Stage stage("holding the derivations against one another");
+verify::Certificate compare_derivations(Mechanics& m, const DisplayForm& one, const DisplayForm& two,
+                                        const verify::Options& options, const print::Findings& findings) {
+  const std::string identity = pipeline::program_identity(), model = m.model->content_hash;
+  const bool is_cached = !identity.empty() && !model.empty();
+  const std::string key =
+      fmt::format("document\n{}\n{}\n{} {} {}\n", identity, model, options.digits, options.points, options.seed);
+  if (is_cached) {
+    if (std::optional<verify::Certificate> earlier = pipeline::load_certificate(key)) {
+      earlier->options = options;
+      return std::move(*earlier);
+    }
+  }
   verify::Subjects subjects;
   subjects.systems = verify::all_formulations(m, &subjects.left_out);
   for (const DisplayForm* form : {&one, &two}) {
@@ -52,8 +62,17 @@ void check_against_oracle(Mechanics& m, const DisplayForm& one, const DisplayFor
           {fmt::format("display form {}", system::name(form->approach)), reading::residuals_on_dag(*form, m)});
   }
   if (findings.routh) subjects.reading.push_back({"Routh's reduction", reading::residuals_on_dag(*findings.routh, m)});
-  const verify::Certificate certificate = verify::certify(m, subjects, {50, pipeline::emission_points, seed, {}});
+  verify::Certificate certificate = verify::certify(m, subjects, options);
   if (certificate.interrupted) throw work::Interrupted{};
+  if (is_cached) pipeline::store_certificate(key, certificate);
+  return certificate;
+}
+
+void check_against_oracle(Mechanics& m, const DisplayForm& one, const DisplayForm& two, std::uint64_t seed,
+                          print::Findings& findings) {
+  const work::Stage stage("holding the derivations against one another");
+  const verify::Certificate certificate =
+      compare_derivations(m, one, two, {50, pipeline::emission_points, seed, {}}, findings);
   pipeline::require_pass(certificate, *m.model);
   // Omits the measured differences: their last digits depend on the machine's word size, and output must be identical.
   findings.certificate = fmt::format("{} at {} random states in {} digits, {} comparisons", certificate.verdict(),

@@ -63,6 +63,22 @@ TEST_CASE(
   CHECK_FALSE(contains(with_cache(folder, emit).out, "another formulation"));
 }
 
+TEST_CASE("cached certificates: a document has that of an earlier one") {
+  const Folder folder;
+  folder.write("p.toml", pendulum_text("[scene.default]\nt = [0, 1]\ninitial = { x = 1, y = 0 }"));
+  const Words emit{"emit", "p.toml", "-o", "out", "--target", "latex"};
+  REQUIRE(with_cache(folder, emit).status == 0);
+  const std::string first = folder.read("out/p.tex");
+  REQUIRE(cached_files(folder).size() == 1);
+  CHECK(with_cache(folder, emit).status == 0);
+  CHECK(folder.read("out/p.tex") == first);
+  overwrite_verdict(cached_files(folder).front());
+  CHECK(with_cache(folder, emit).status == 0);
+  CHECK(contains(folder.read("out/p.tex"), "another formulation"));
+  CHECK(with_cache(folder, with(emit, {"--seed", "2"})).status == 0);
+  CHECK_FALSE(contains(folder.read("out/p.tex"), "another formulation"));
+}
+
 TEST_CASE("cached certificates: verify ignores the cache, and damaged entries are replaced") {
   const Folder folder;
   folder.write("p.toml", pendulum_text("[scene.default]\nt = [0, 1]\ninitial = { x = 1, y = 0 }"));
