@@ -21,7 +21,7 @@ struct Jet::Dual {
 namespace {
 
 constexpr long most_bits_of_angle = 1 << 16;  // before its point
-constexpr long most_exponent = 10000000;      // of an exponential; those below its negative count as 0
+constexpr long most_exponent = 10000;         // of an exponential; those below its negative count as 0
 
 const Jet& zero_jet() {
   static const Jet zero;
@@ -181,8 +181,9 @@ std::pair<Jet, Jet> sin_cos(const Jet& x, const Precision& p) {
 
 std::pair<Jet, Jet> sinh_cosh(const Jet& x, const Precision& p) {
   if (x.level() == 0) {
-    require(cln::abs(x.real()) <= most_exponent, "an exponential is beyond all bounds");
-    const cln::cosh_sinh_t both = cln::cosh_sinh(p.round(x.real()));
+    // Narrow parts are 1/cosh(x/1e-9): beyond the largest exponent they count as constant.
+    const Real bounded = cln::max(Real(-most_exponent), cln::min(x.real(), Real(most_exponent)));
+    const cln::cosh_sinh_t both = cln::cosh_sinh(p.round(bounded));
     return {Jet(both.sinh), Jet(both.cosh)};
   }
   const auto [s, c] = sinh_cosh(x.value(x.level()), p);
