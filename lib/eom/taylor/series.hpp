@@ -155,8 +155,8 @@ class Series : public StepEnds {
   /// The largest order whose coefficients, times the order, do not overflow.
   int largest_finite_order(const At& at, int terms) const {
     constexpr double largest = std::numeric_limits<double>::max() / 1024;
-    const auto is_finite = [&](int order) {
-      const double* const term = at.c + static_cast<std::size_t>(order) * s_;
+    const auto is_finite = [&](int k) {
+      const double* const term = at.c + static_cast<std::size_t>(k) * s_;
       return std::all_of(term, term + s_, [](double c) { return std::abs(c) < largest; });
     };
     while (terms > control_.lowest() && !is_finite(terms)) --terms;
