@@ -129,7 +129,6 @@ std::vector<Nearest> nearest_to_cone(const Core& a, const std::string& angle, co
     const std::string w = cone.radial(a.centre, name), h = name(cone.height(a.centre));
     const std::string tip = name(fmt::format("{} - {}", a.centre, apex));
     const auto beside_tip = [&](const std::string& at_tip, const std::string& at_mantle) {
-      if (a.on_rim) return name(at_mantle);
       return name(fmt::format("if(norm({})*sin({}) + {}*cos({}) < 0, {}, {})", w, angle, h, angle, at_tip, at_mantle));
     };
     const std::string gap =

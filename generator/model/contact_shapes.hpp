@@ -24,7 +24,6 @@ struct Core {
   std::string radius;   // of the neighbourhood of the core: "0" for points of bodies and for disks
   std::string axis;     // a unit vector: along a segment, across a disk
   std::string size;     // the length of a segment, the radius of a disk
-  bool on_rim = false;  // a point of the rim of a disk, which meets the mantle of a cone and not its tip
 };
 
 /// Names for parts of the expressions, in their order; `inlined`: the parts themselves.

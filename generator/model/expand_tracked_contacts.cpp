@@ -136,7 +136,7 @@ void ContactTable::rim(const Value& at, const Core& disk, const Approach& approa
                        const std::vector<std::string>& through_face) {
   const std::string name = name_ + "_1", phi = name + "_phi";
   const auto point = [&](const std::string& cosine, const std::string& sine) {
-    return Core{Core::Kind::point, on_rim(disk, body().text, cosine, sine), "0", "", "", true};
+    return Core{Core::Kind::point, on_rim(disk, body().text, cosine, sine), "0", "", ""};
   };
   const Core nearest = point("cos(" + phi + ")", "sin(" + phi + ")");
   Value angle = empty_table(at);

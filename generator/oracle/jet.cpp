@@ -21,7 +21,7 @@ struct Jet::Dual {
 namespace {
 
 constexpr long most_bits_of_angle = 1 << 16;  // before its point
-constexpr long most_exponent = 10000;         // of an exponential; those below its negative count as 0
+constexpr long most_exponent = 10000;         // of an exponential
 
 const Jet& zero_jet() {
   static const Jet zero;
@@ -231,7 +231,9 @@ Jet tanh(const Jet& x, const Precision& p) {
 Jet exp(const Jet& x, const Precision& p) {
   if (x.level() == 0) {
     require(x.real() <= most_exponent, "an exponential is beyond all bounds");
-    return x.real() < -most_exponent ? Jet() : Jet(cln::exp(p.round(x.real())));
+    // Below the exponent range of CLN's floats it counts as 0.
+    static const cln::cl_I faintest = -cln::expt_pos(cln::cl_I(10), 18);
+    return x.real() < faintest ? Jet() : Jet(cln::exp(p.round(x.real())));
   }
   const Jet e = exp(x.value(x.level()), p);
   return apply_chain_rule(x, e, e);

@@ -17,11 +17,8 @@ namespace eomgen::symbolic {
 
 /// Message of the std::domain_error of a division by zero.
 inline constexpr const char* division_by_zero = "division by zero";
-/// Message of the std::domain_error of an exponential above most_exponent.
-inline constexpr const char* exponent_too_large = "the exponential of a number above 10000";
-/// The largest argument of an exponential: far above those of binary64 (709). Its value as a rational has 2 kB:
-/// exponentials of exponentials would take all memory and time.
-inline constexpr long most_exponent = 10000;
+/// Message of the std::domain_error of an exponential above the exponent range of CLN's floats.
+inline constexpr const char* exponent_too_large = "the exponential of a number above 1e18";
 
 /// Arithmetic with CLN floats of one format. Exact rationals are rounded once. Throws std::domain_error outside the
 /// real domain of a function and for a division by zero.
@@ -55,8 +52,8 @@ struct ClnArithmetic {
       case Op::asin: return arcsine(x);
       case Op::acos: return cln::pi(format) / 2 - arcsine(x);
       case Op::atan: return cln::atan(x);
-      case Op::sinh: return cln::sinh(within_exponents(x));
-      case Op::cosh: return cln::cosh(within_exponents(x));
+      case Op::sinh: return cln::sinh(exponent(x));
+      case Op::cosh: return cln::cosh(exponent(x));
       case Op::tanh: return cln::tanh(x);
       case Op::exp: return exp(x);
       case Op::log: require(cln::plusp(x), "log of a number that is not positive"); return cln::ln(x);
@@ -72,19 +69,19 @@ struct ClnArithmetic {
     require(cln::float_exponent(x) <= most_bits, "an angle of more than 65536 bits before its point");
     return x;
   }
-  /// 0 for arguments below -most_exponent.
+  /// 0 if the result is below the exponent range of CLN's floats.
   static cln::cl_R exp(const cln::cl_F& x) {
-    if (x < cln::cl_R(-most_exponent)) return 0;
+    if (x < -largest_exponent()) return 0;
     return cln::exp(exponent(x));
   }
-  /// The argument of a hyperbolic function, at most the largest exponent: narrow parts are 1/cosh(x/1e-9).
-  cln::cl_F within_exponents(const cln::cl_F& x) const {
-    if (cln::abs(x) <= cln::cl_R(most_exponent)) return x;
-    return round(cln::minusp(x) ? cln::cl_R(-most_exponent) : cln::cl_R(most_exponent));
-  }
+  /// The argument of an exponential, within the exponent range of CLN's floats.
   static const cln::cl_F& exponent(const cln::cl_F& x) {
-    require(cln::abs(x) <= cln::cl_R(most_exponent), exponent_too_large);
+    require(cln::abs(x) <= largest_exponent(), exponent_too_large);
     return x;
+  }
+  static const cln::cl_I& largest_exponent() {
+    static const cln::cl_I value = cln::expt_pos(cln::cl_I(10), 18);
+    return value;
   }
   cln::cl_R arcsine(const cln::cl_F& x) const {
     require(cln::abs(x) <= cln::cl_R(1), "asin or acos outside [-1, 1]");

@@ -98,12 +98,9 @@ TEST_CASE("functions in binary64 and in many digits agree") {
   }
 }
 
-TEST_CASE("exponentials of large numbers are 0, or have no value") {
+TEST_CASE("results below the range of CLN's floats are 0") {
   CHECK(cln::zerop(precise.call(Op::exp, -cln::expt(Rational(10), 300))));
-  CHECK(cln::plusp(precise.call(Op::exp, -cln::expt(Rational(10), 4))));
-  CHECK_THROWS_AS(precise.call(Op::exp, cln::expt(Rational(10), 5)), std::domain_error);
-  CHECK(precise.call(Op::cosh, cln::expt(Rational(10), 8)) > cln::expt(Rational(10), 1000));
-  CHECK(precise.call(Op::tanh, cln::expt(Rational(10), 8)) == 1);
+  CHECK(cln::plusp(precise.call(Op::exp, -cln::expt(Rational(10), 17))));
 }
 
 TEST_CASE("angles whose multiple of pi would fill the memory have no value") {
