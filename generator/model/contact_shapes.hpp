@@ -20,10 +20,10 @@ namespace eomgen::model {
 struct Core {
   enum class Kind { point, segment, disk };
   Kind kind = Kind::point;
-  std::string centre;   // a position
-  std::string radius;   // of the neighbourhood of the core: "0" for points of bodies and for disks
-  std::string axis;     // a unit vector: along a segment, across a disk
-  std::string size;     // the length of a segment, the radius of a disk
+  std::string centre;  // a position
+  std::string radius;  // of the neighbourhood of the core: "0" for points of bodies and for disks
+  std::string axis;    // a unit vector: along a segment, across a disk
+  std::string size;    // the length of a segment, the radius of a disk
 };
 
 /// Names for parts of the expressions, in their order; `inlined`: the parts themselves.
