@@ -21,7 +21,8 @@ struct Jet::Dual {
 namespace {
 
 constexpr long most_bits_of_angle = 1 << 16;  // before its point
-constexpr long most_exponent = 10000;         // of an exponential
+// Of an exponential, far above those of binary64 (709): exponentials of exponentials would take all memory and time.
+constexpr long most_exponent = 10000;
 
 const Jet& zero_jet() {
   static const Jet zero;
@@ -181,9 +182,8 @@ std::pair<Jet, Jet> sin_cos(const Jet& x, const Precision& p) {
 
 std::pair<Jet, Jet> sinh_cosh(const Jet& x, const Precision& p) {
   if (x.level() == 0) {
-    // Narrow parts are 1/cosh(x/1e-9): beyond the largest exponent they count as constant.
-    const Real bounded = cln::max(Real(-most_exponent), cln::min(x.real(), Real(most_exponent)));
-    const cln::cosh_sinh_t both = cln::cosh_sinh(p.round(bounded));
+    require(cln::abs(x.real()) <= most_exponent, "an exponential is beyond all bounds");
+    const cln::cosh_sinh_t both = cln::cosh_sinh(p.round(x.real()));
     return {Jet(both.sinh), Jet(both.cosh)};
   }
   const auto [s, c] = sinh_cosh(x.value(x.level()), p);

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t order = 4;
 
 /// The number of digits by which the time scale of a series is shorter than 1, from the growth of its coefficients, n
-/// per order. 0 for longer ones. At most 400: the current of a diode grows by e^200 per volt.
+/// per order. 0 for longer ones. At most 400: the current of a diode grows by e^40 per volt.
 int digits_of_rate(const std::vector<Real>& coefficients, std::size_t n) {
   constexpr double most = 400;
   const auto exponent = [](const Real& x) {

@@ -184,7 +184,7 @@ class Run {
     if (!continues) return end(Outcome::stopped_by_event, "stopped by the observer at t = " + printed(t_));
     if (adaptive() && (steps_ & (steps_ - 1)) == 0 && stagnates())
       return end(Outcome::step_too_small,
-                 "the steps become ever shorter before t = " + printed(t_) + ", as at a singularity of the equations,");
+                 "the steps become ever shorter before t = " + printed(t_) + ", as at a singularity of the equations");
     const double* x = stepper_.x0();
     if (std::any_of(x, x + stepper_.size(), [](double value) { return std::abs(value) > divergence_bound; }))
       return end(Outcome::diverged, "a component of the state exceeds 1e150 at t = " + printed(t_));

@@ -141,10 +141,10 @@ class Series : public StepEnds {
     at.order = 0;
     // Coefficients grow by 1/radius per order: on a fast time scale those of a high order overflow.
     int code = system_.taylor(system_.self, t, x, terms, at.c);
-    while (code == code_not_finite && terms > control_.lowest())
+    while (code == code_not_finite && !order_is_given_ && terms > control_.lowest())
       code = system_.taylor(system_.self, t, x, --terms, at.c);
     if (code != 0) return code;
-    at.order = largest_finite_order(at, terms);
+    at.order = order_is_given_ ? terms : largest_finite_order(at, terms);
     std::copy_n(at.c + s_, s_, f);
     if (s_ == n_) return 0;
     code = evaluate(t, x, scratch_);
