@@ -11,7 +11,7 @@
 #include "numeric/numbers.hpp"
 #include "pipeline/bound_run.hpp"
 #include "run/integration.hpp"
-#include "stress/start.hpp"
+#include "run/project_start.hpp"
 
 namespace eomgen::analysis {
 namespace {
@@ -59,7 +59,7 @@ class Variation {
       if (test.zero_replacement && scene.qdot[i] == 0) scene.qdot[i] = *test.zero_replacement;
     }
     if (constrained && !kept.empty() &&
-        !stress::project_start(scene, pipeline::make_run_request(derived, simulation_, scene, false), kept)) {
+        !run::project_start(scene, pipeline::make_run_request(derived, simulation_, scene, false), kept)) {
       why = "the constraints allow no start there";
       return std::nullopt;
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "linear/spectrum.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <algorithm>
 #include <complex>
 
@@ -137,7 +137,7 @@ class Binary64 {
         shifted(i, n + i) = at.imag();
         shifted(n + i, i) = -at.imag();
       }
-      return !(rounding_ * Eigen::PartialPivLU<Eigen::MatrixXd>(shifted).inverse().norm() < 1);
+      return !(rounding_ * numeric::inverse(shifted).norm() < 1);
     }
     const auto nearest = std::min_element(free_.begin(), free_.end(), [&at](const Complex& a, const Complex& b) {
       return std::abs(a - at) < std::abs(b - at);

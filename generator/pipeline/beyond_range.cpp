@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/beyond_range.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "derive/formulations/lagrange.hpp"
 #include "error.hpp"
+#include "numeric/dense.hpp"
 #include "symbolic/evaluate.hpp"
 
 namespace eomgen::pipeline {
@@ -67,11 +68,10 @@ std::optional<Eigen::VectorXd> motion(const system::EquationSystem& s, const run
   all.bottomLeftCorner(M, N) = A;
   Eigen::VectorXd right(N + M);
   right << numbers(v, n * n, n), -numbers(v, n * n + n + m * n, m);
-  Eigen::FullPivLU<Eigen::MatrixXd> lu(all);
-  lu.setThreshold(singular);
-  if (!lu.isInvertible()) return std::nullopt;
+  const std::optional<Eigen::VectorXd> found = numeric::solve(all, right, singular);
+  if (!found) return std::nullopt;
   Eigen::VectorXd result(N + 2);
-  result << lu.solve(right).head(N), v[v.size() - 2], v.back();
+  result << found->head(N), v[v.size() - 2], v.back();
   return result;
 }
 

@@ -3,24 +3,18 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 
+#include "numeric/dense.hpp"
 #include "run/derivative_run.hpp"
 #include "run/integration.hpp"
-#include "run/variational_equations.hpp"
 
 namespace eomgen::run {
 namespace {
 
-/// The last pivot of a pivoted QR of A^T relative to the first, and the row. Rows are scaled by their longest lengths
-/// so far: one that vanishes depends on the others.
-struct Measure {
-  double value = 1;
-  Eigen::Index row = 0;
-};
-
-Measure measure(const RunRequest& request, double t, const double* x, Eigen::VectorXd& longest) {
+/// Of A^T. Rows of A are scaled by their longest lengths so far: one that vanishes depends on the others.
+numeric::LastPivot measure(const RunRequest& request, double t, const double* x, Eigen::VectorXd& longest) {
   const auto n = static_cast<Eigen::Index>(request.code.free.size()),
              m = static_cast<Eigen::Index>(request.code.active_constraints);
   Eigen::VectorXd psi(m), b(m);
@@ -31,9 +25,7 @@ Measure measure(const RunRequest& request, double t, const double* x, Eigen::Vec
   longest = longest.cwiseMax(A.rowwise().norm());
   for (Eigen::Index i = 0; i < m; ++i)
     if (longest(i) > 0) A.row(i) /= longest(i);
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(A.transpose());
-  return {std::abs(qr.matrixQR()(m - 1, m - 1)) / std::max(qr.maxPivot(), 1e-300),
-          qr.colsPermutation().indices()(m - 1)};
+  return numeric::last_pivot(A.transpose());
 }
 
 }  // namespace
@@ -44,21 +36,21 @@ std::optional<LostRank> find_lost_rank(const RunRequest& request, const RunResul
   if (m == 0 || m > request.code.free.size() || request.code.constraints == nullptr) return std::nullopt;
   double largest = 0;
   Eigen::VectorXd longest = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(m));
-  std::vector<std::pair<double, Measure>> path;
+  std::vector<std::pair<double, numeric::LastPivot>> path;
   Integration integration(request, motion.solver);
   integration.run(derivative_options(request, motion.solver), [&](const eom::StepView& view) {
     path.emplace_back(view.t1, measure(request, view.t1, view.x1.data(), longest));
-    largest = std::max(largest, path.back().second.value);
+    largest = std::max(largest, path.back().second.relative);
     return view.t1 < until;
   });
   std::optional<LostRank> found;
   double least = 0;
   bool inside = false;
   for (const auto& [t, at] : path) {
-    const bool close = at.value < near * largest;
-    if (close && (!inside || at.value < least)) {
-      least = at.value;
-      found = LostRank{t, request.constraint_names[static_cast<std::size_t>(at.row)]};
+    const bool close = at.relative < near * largest;
+    if (close && (!inside || at.relative < least)) {
+      least = at.relative;
+      found = LostRank{t, request.constraint_names[static_cast<std::size_t>(at.column)]};
     }
     inside = close;
   }

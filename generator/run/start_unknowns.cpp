@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/start_unknowns.hpp"
 
-#include <Eigen/SVD>
+#include "numeric/dense.hpp"
 
 namespace eomgen::run {
 
@@ -9,8 +9,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 bool keep_determined(const MatrixXd& columns, Index rank, double tolerance, Eigen::VectorXd& move) {
-  const Eigen::JacobiSVD<MatrixXd> svd(columns, Eigen::ComputeFullV);
-  const MatrixXd open = svd.matrixV().rightCols(columns.cols() - rank);
+  const MatrixXd open = numeric::right_singular_vectors(columns).rightCols(columns.cols() - rank);
   bool any = false;
   for (Index i = 0; i < columns.cols(); ++i) {
     const bool fixed = open.row(i).norm() < tolerance;

@@ -5,7 +5,7 @@
 #include <cln/exception.h>
 #include <fmt/format.h>
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -253,10 +253,9 @@ void Auditor::audit_mass(const std::string& test, const run::Scene& scene, const
     if (code.constraints(sample.t, sample.x.data(), scene.parameters.data(), psi.data(), A.data(), b.data()) != 0 ||
         !A.allFinite())
       return;
-    const Eigen::FullPivLU<Eigen::MatrixXd> lu(A);
-    const Eigen::MatrixXd Z = lu.kernel();
-    if (lu.rank() == n) return;
-    M = Z.transpose() * M * Z;
+    const numeric::Kernel free = numeric::kernel(A);
+    if (free.rank == n) return;
+    M = free.basis.transpose() * M * free.basis;
   }
   raise(audit_.mass_condition, condition(M), test);
   const Eigen::VectorXd d = M.diagonal().cwiseAbs().cwiseSqrt().cwiseInverse();

@@ -17,7 +17,7 @@ bool allowed(const std::string& included, const std::string& header, const std::
   if (included.starts_with("<Eigen/"))
     return folder == "contacts" ||  // matrices of responses, complementarity problems
            header == "projection.hpp" || header == "singularity_detector.hpp" || header == "rounding.hpp" ||
-           header == "jumps.hpp";  // least-norm steps and momenta for singular M
+           header == "momentum_jump_definition.hpp";  // least-norm steps and momenta for singular M
   // Only POSIX can create a file exclusively and without following links; the standard library cannot.
   const std::set<std::string> posix{"<fcntl.h>", "<stdlib.h>", "<sys/stat.h>", "<unistd.h>"};
   if (posix.contains(included)) return header == "atomic_file.hpp";

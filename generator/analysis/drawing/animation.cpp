@@ -21,6 +21,14 @@ constexpr int turns = 9, steps_per_turn = 12, sides_of_wire = 6;  // of a spring
 
 Point vector(const std::vector<double>& row, std::size_t at) { return {row[at], row[at + 1], row[at + 2]}; }
 
+/// The rotation by the least angle that turns the direction of a into that of b.
+Eigen::Quaterniond turn_between(const Point& a, const Point& b) {
+  const Point from = a.normalized(), to = b.normalized(), half = from + to;
+  if (half.norm() < 1e-6) return {0, from.unitOrthogonal().x(), from.unitOrthogonal().y(), from.unitOrthogonal().z()};
+  const Point middle = half.normalized(), axis = from.cross(middle);
+  return {from.dot(middle), axis.x(), axis.y(), axis.z()};
+}
+
 void add_quad(TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
   mesh.triangles.push_back({a, b, c});
   mesh.triangles.push_back({a, c, d});
@@ -238,7 +246,7 @@ class Animator {
       if (!now.allFinite()) return left_out_.push_back(node.name);
       // The rotation with the least twist from one keyframe to the next.
       if (now.norm() > 0) {
-        rotation = Eigen::Quaterniond::FromTwoVectors(along, now) * rotation;
+        rotation = turn_between(along, now) * rotation;
         along = now;
       }
       node.translation.push_back(a);
@@ -271,7 +279,7 @@ Animation animation(const DrawnParts& parts, const Primitives& primitives, std::
   const Point up = down                 ? Point(-Point((*down)[0], (*down)[1], (*down)[2]))
                    : animator.is_flat() ? Point(Point::UnitY())
                                         : Point(Point::UnitZ());
-  result.upright = Eigen::Quaterniond::FromTwoVectors(up, Point::UnitY());
+  result.upright = turn_between(up, Point::UnitY());
   return result;
 }
 

@@ -2,7 +2,6 @@
 #include "analysis/drawing/surface_lines.hpp"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +10,7 @@
 #include <utility>
 
 #include "analysis/drawing/level_lines.hpp"
+#include "numeric/dense.hpp"
 
 namespace eomgen::analysis {
 namespace {
@@ -56,7 +56,7 @@ class CurveTracer {
       if (!now) return std::nullopt;
       const MatrixXd A = now->second * S.asDiagonal();
       const MatrixXd gram = A * A.transpose();
-      const VectorXd back = S.asDiagonal() * (A.transpose() * gram.fullPivLu().solve(now->first));
+      const VectorXd back = S.asDiagonal() * (A.transpose() * numeric::solve(gram, now->first));
       if (!back.allFinite()) return std::nullopt;
       q -= back;
       if (back.cwiseQuotient(S).norm() < standing) break;

@@ -5,7 +5,6 @@
 // whose effect the equations leave undetermined.
 #pragma once
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,6 +14,7 @@
 #include <vector>
 
 #include "eom/expressions/code.hpp"
+#include "eom/hybrid/momentum_jump.hpp"
 #include "eom/hybrid/problem.hpp"
 
 namespace eom::hybrid {
@@ -63,8 +63,8 @@ class Jumps {
     code_.values(at(after, u_after), values[1]);
     code_.values(at(later, u_after), values[2]);
     const Sizes size = sizes(values[0], values[1], before.x);
-    Eigen::VectorXd change = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_));
-    Eigen::Index row = 0;
+    std::vector<double> change(n_);
+    std::size_t row = 0;
     bool momentum = false;
     for (std::size_t i = 0; i < of_.functions.size(); ++i) {
       const Quantity what = of_.functions[i].what;
@@ -72,7 +72,7 @@ class Jumps {
       const bool jump = by > std::max(rounding * size[static_cast<std::size_t>(what)], part_of_far * on) &&
                         by > 1e-14 * std::max(std::abs(values[0][i]), std::abs(values[1][i]));
       if (what == Quantity::momentum) {
-        change(row++) = jump ? values[0][i] - values[1][i] : 0;
+        change[row++] = jump ? values[0][i] - values[1][i] : 0;
         momentum = momentum || jump;
       }
       if (!jump) continue;
@@ -84,13 +84,10 @@ class Jumps {
       return impulse;
     }
     if (!momentum) return impulse;
-    const auto n = static_cast<Eigen::Index>(n_);
     std::vector<double> M(n_ * n_);
     mass_.values(at(after, u_after), M);
-    const Eigen::VectorXd moved =
-        Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(Eigen::Map<const Eigen::MatrixXd>(M.data(), n, n))
-            .solve(change);
-    for (std::size_t i = 0; i < n_; ++i) x[n_ + i] += moved(static_cast<Eigen::Index>(i));
+    const std::vector<double> moved = rates_of_momenta(M, change);
+    for (std::size_t i = 0; i < n_; ++i) x[n_ + i] += moved[i];
     return impulse;
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stress/start.hpp"
+#include "run/project_start.hpp"
 
 #include <algorithm>
 #include <eom/automatic.hpp>
@@ -8,15 +8,15 @@
 
 #include "run/bind.hpp"
 
-namespace eomgen::stress {
+namespace eomgen::run {
 namespace {
 
-class Start {
+class StartProjection {
  public:
-  Start(const run::Scene& scene, const run::RunRequest& run)
+  StartProjection(const Scene& scene, const RunRequest& run)
       : run_(run),
         n_(run.code.free.size()),
-        problem_(run::make_problem(run, eom::Automatic::name)),
+        problem_(make_problem(run, eom::Automatic::name)),
         rows_(problem_),
         x_(run.state_names.size()) {
     for (std::size_t i = 0; i < n_; ++i) {
@@ -25,11 +25,11 @@ class Start {
     }
     std::copy(scene.z.begin(), scene.z.end(),
               x_.begin() + static_cast<std::ptrdiff_t>(run.code.layout().first_order_begin()));
-    for (const run::Signal& signal : scene.inputs) u_.push_back(signal(scene.t0, scene.t0));
+    for (const Signal& signal : scene.inputs) u_.push_back(signal(scene.t0, scene.t0));
     rows_.start(scene.t0, x_.data(), u_.data());
   }
 
-  bool meet(run::Scene& scene, const std::vector<std::uint32_t>& kept) {
+  bool meet(Scene& scene, const std::vector<std::uint32_t>& kept) {
     std::vector<std::size_t> still;
     for (const std::uint32_t q : kept) {
       const auto found = std::find(run_.code.free.begin(), run_.code.free.end(), q);
@@ -70,7 +70,7 @@ class Start {
     return code;
   }
 
-  const run::RunRequest& run_;
+  const RunRequest& run_;
   std::size_t n_;
   eom::hybrid::Problem problem_;
   eom::hybrid::ConstraintRows rows_;
@@ -79,8 +79,8 @@ class Start {
 
 }  // namespace
 
-bool project_start(run::Scene& scene, const run::RunRequest& run, const std::vector<std::uint32_t>& kept) {
-  return Start(scene, run).meet(scene, kept);
+bool project_start(Scene& scene, const RunRequest& run, const std::vector<std::uint32_t>& kept) {
+  return StartProjection(scene, run).meet(scene, kept);
 }
 
-}  // namespace eomgen::stress
+}  // namespace eomgen::run

@@ -8,10 +8,10 @@
 
 #include "run/runner.hpp"
 
-namespace eomgen::stress {
+namespace eomgen::run {
 
 /// `run`: for `scene`, with code that has constraints and mass; kept: coordinates that do not change. Returns false,
 /// and leaves the scene unchanged, if there is no such start nearby.
-bool project_start(run::Scene& scene, const run::RunRequest& run, const std::vector<std::uint32_t>& kept);
+bool project_start(Scene& scene, const RunRequest& run, const std::vector<std::uint32_t>& kept);
 
-}  // namespace eomgen::stress
+}  // namespace eomgen::run
