@@ -7,6 +7,7 @@
 #include <cmath>
 #include <eom/hybrid/methods.hpp>
 #include <eom/hybrid/stepwise_run.hpp>
+#include <eom/ode.hpp>
 
 #include "eomgen/compiled_state.hpp"
 #include "eomgen/motion_event.hpp"
@@ -14,7 +15,6 @@
 #include "lists.hpp"
 #include "model/names.hpp"
 #include "run/eligibility.hpp"
-#include "run/methods.hpp"
 #include "run/monitored_functions.hpp"
 
 namespace eomgen {

@@ -9,6 +9,7 @@
 #include <eom/ensemble/integrate.hpp>
 #include <eom/hybrid/balance.hpp>
 #include <eom/hybrid/event_ranges.hpp>
+#include <eom/ode.hpp>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -17,7 +18,6 @@
 #include "error.hpp"
 #include "pipeline/bound_run.hpp"
 #include "pipeline/graph_trimmer.hpp"
-#include "run/methods.hpp"
 #include "run/monitored_functions.hpp"
 #include "work.hpp"
 

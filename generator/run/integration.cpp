@@ -2,9 +2,9 @@
 #include "run/integration.hpp"
 
 #include <eom/hybrid/integration.hpp>
+#include <eom/ode.hpp>
 
 #include "run/bind.hpp"
-#include "run/methods.hpp"
 
 namespace eomgen::run {
 

@@ -36,11 +36,20 @@ ObserverRef observer_ref(Observer& observer) {
           [](void* self, const StepView& step) -> bool { return at_address<Observer>(self)(step); }};
 }
 
+/// By default none: the state does not change at the end of a step.
 struct AfterStepRef {
-  void* self;
-  int (*call)(void* self, double t, double* x);
-  int operator()(double t, double* x) const { return call(self, t, x); }
+  void* self = nullptr;
+  int (*call)(void* self, double t, double* x) = nullptr;
+  int operator()(double t, double* x) const { return call == nullptr ? 0 : call(self, t, x); }
 };
+inline bool is_none(const AfterStepRef& after_step) { return after_step.call == nullptr; }
+constexpr bool is_none(const NoProjection&) { return true; }
+template <class AfterStep>
+constexpr bool is_none(const AfterStep&) {
+  return false;
+}
+inline AfterStepRef after_step_ref(NoProjection&) { return {}; }
+inline AfterStepRef after_step_ref(AfterStepRef& after_step) { return after_step; }
 template <class AfterStep>
 AfterStepRef after_step_ref(AfterStep& after_step) {
   return {address_of(after_step),

@@ -24,6 +24,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "eom/by_reference.hpp"
 #include "eom/run_types.hpp"
 
 namespace eom {
@@ -160,7 +161,7 @@ class Run {
 
   /// Runs after_step and evaluates the derivative at the end of the step. Returns a code.
   int complete(double t_next, bool& moved) {
-    if constexpr (!std::is_same_v<std::remove_cvref_t<AfterStep>, NoProjection>) {
+    if (!detail::is_none(after_step_)) {
       double* x1 = stepper_.x1();
       std::copy_n(x1, stepper_.size(), stepper_.scratch());
       const int code = after_step_(t_next, x1);

@@ -14,11 +14,13 @@
 #include <utility>
 
 #include "eom/by_reference.hpp"
+#include "eom/compiled.hpp"
 #include "eom/drive.hpp"
 #include "eom/explicit_rk/method.hpp"
 #include "eom/registry.hpp"
 #include "eom/run_types.hpp"
 #include "eom/system.hpp"
+#include "eom/version.hpp"
 #include "eom/with_jacobian.hpp"
 #include "eom/with_taylor.hpp"
 
@@ -96,26 +98,14 @@ Result run(Problem& problem, const InitialValues& values, ObserverRef observer, 
       .run();
 }
 
+using IntegrationLayout = Layout<EOM_VERSION, sizeof(System), sizeof(Options), sizeof(StepView), sizeof(Result)>;
+
 /// Uses the methods that are compiled once for all right-hand sides.
-template <class AfterStep>
-Result integrate_system(std::string_view method, System system, const InitialValues& values, ObserverRef observer,
-                        AfterStep after_step) {
-  Result result;
-  const auto by = [&]<class T>(T*) {
-    if constexpr (explicit_rk::Tableau<T>) {
-      return false;
-    } else {
-      if (!is_method<T>(method, values.options)) return false;
-      require_eligible(info_of<T>, system, values.x0.size() - values.options.quadratures);
-      if constexpr (requires { T::check(system, values.t0, values.x0, values.options); })
-        T::check(system, values.t0, values.x0, values.options);
-      result = run<T>(system, values, observer, after_step);
-      return true;
-    }
-  };
-  if (!by(static_cast<Automatic*>(nullptr)) && !any_method(by)) throw_unknown(method);
-  return result;
-}
+EOM_RUNTIME_INLINE Result integrate_system(std::string_view method, System system, const InitialValues& values,
+                                           ObserverRef observer, AfterStepRef after_step, IntegrationLayout = {});
+/// Uses any method. Explicit ones, too, are compiled once for all systems.
+EOM_RUNTIME_INLINE Result integrate_any_system(std::string_view method, System system, const InitialValues& values,
+                                               ObserverRef observer, AfterStepRef after_step, IntegrationLayout = {});
 
 /// Explicit methods are compiled for each right-hand side, so that it can be inlined into the stages.
 template <class F, class AfterStep>
@@ -131,19 +121,18 @@ Result integrate_by_name(std::string_view method, F& rhs, const InitialValues& v
       return false;
     }
   };
-  return any_method(by) ? result : integrate_system(method, system_of(rhs), values, observer, after_step);
+  return any_method(by) ? result
+                        : integrate_system(method, system_of(rhs), values, observer, after_step_ref(after_step));
 }
 
-/// A System goes by a variable without const: explicit methods, too, are compiled once for all of them.
+/// A System goes by a variable without a type of after_step.
 template <class F, class AfterStep>
 Result integrate_rhs(std::string_view method, F& rhs, const InitialValues& values, ObserverRef observer,
                      AfterStep after_step) {
-  if constexpr (std::is_same_v<std::remove_const_t<F>, System>) {
-    System system = rhs;
-    return integrate_by_name(method, system, values, observer, after_step);
-  } else {
+  if constexpr (std::is_same_v<std::remove_const_t<F>, System>)
+    return integrate_any_system(method, rhs, values, observer, after_step_ref(after_step));
+  else
     return integrate_by_name(method, rhs, values, observer, after_step);
-  }
 }
 
 }  // namespace detail
@@ -166,3 +155,7 @@ Result integrate(std::string_view method, F&& rhs, double t0, std::span<const do
 }
 
 }  // namespace eom
+
+#ifndef EOM_COMPILED_RUNTIME
+#include "eom/ode_definition.hpp"
+#endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The library eomgen_hybrid: the code of runs, compiled once (eom/hybrid/compiled_runtime.hpp).
+// The library eomgen_hybrid: the code of runs, compiled once (eom/compiled.hpp).
 #include <stdexcept>
 #include <string>
 
@@ -19,5 +19,7 @@ namespace {
 
 #include <eom/hybrid/external_steps_definition.hpp>
 #include <eom/hybrid/integration_definition.hpp>
+#include <eom/hybrid/momentum_jump_definition.hpp>
 #include <eom/hybrid/run_definition.hpp>
 #include <eom/hybrid/stepwise_integration.hpp>
+#include <eom/ode_definition.hpp>

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "eom/ode.hpp"
-#include "lib/compiled.hpp"
 
 namespace problems {
 
