@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/emission.hpp"
 
+#include <cln/real.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <eom/hybrid/problem.hpp>
+#include <map>
 #include <memory>
+#include <vector>
 
 #include "abi/functions.hpp"
 #include "emit/context.hpp"
@@ -20,6 +23,7 @@
 #include "pipeline/simulate.hpp"
 #include "pipeline/start_description.hpp"
 #include "run/bind.hpp"
+#include "run/expression_tables.hpp"
 #include "run/monitored_functions.hpp"
 #include "run/requested_outputs.hpp"
 #include "work.hpp"
@@ -61,10 +65,63 @@ std::vector<eom::hybrid::ExchangedChart> exchanged(const program::Program& progr
   return result;
 }
 
+using FixedParameters = std::map<std::uint32_t, symbolic::Rational>;
+
+/// Period and offset of a sample.
+std::vector<symbolic::Ref> times_of(mechanics::Mechanics& m, const model::Sample& sample) {
+  return {mechanics::lower_scalar(m, sample.every),
+          sample.offset == model::no_node ? m.dag->zero() : mechanics::lower_scalar(m, sample.offset)};
+}
+
+/// Emitted code has numbers for fixed parameters: so do the times of its samples. Throws Error{stage "emit"} if one
+/// depends on other parameters too, which its formula in the model's language would take from the caller.
+void fix_sample_times(DerivedModel& derived, const FixedParameters& fixed, emit::EmissionContext& context) {
+  for (std::size_t i = 0; i < derived.model.samples.size() && !fixed.empty(); ++i) {
+    const std::vector<symbolic::Ref> times = times_of(derived.mechanics, derived.model.samples[i]);
+    std::string* const formulas[] = {&context.sample_formulas[i].every, &context.sample_formulas[i].offset};
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      const std::vector<symbolic::Symbol> symbols = derived.mechanics.dag->symbols({times[k]});
+      const auto is_fixed = [&](const symbolic::Symbol& symbol) { return fixed.contains(symbol.index); };
+      if (std::none_of(symbols.begin(), symbols.end(), is_fixed)) continue;
+      if (!std::all_of(symbols.begin(), symbols.end(), is_fixed))
+        throw Error("emit", {},
+                    fmt::format("the times of '{}' depend on a parameter that is fixed and on another one",
+                                derived.model.samples[i].name),
+                    "give --fix all of their parameters, or none");
+      formulas[k]->clear();
+    }
+  }
+}
+
+/// Replaces fixed parameters in a table by their numbers.
+void fix_parameters(eom::expressions::Table& table, const FixedParameters& fixed) {
+  using eom::expressions::Op;
+  for (eom::expressions::Step& step : table.steps) {
+    if (step.op != Op::parameter) continue;
+    const auto at = fixed.find(static_cast<std::uint32_t>(step.a[0]));
+    if (at == fixed.end()) continue;
+    step = {Op::number, {static_cast<std::int32_t>(table.numbers.size())}};
+    table.numbers.push_back(cln::double_approx(at->second));
+  }
+}
+void fix_parameters(eom::hybrid::Problem& problem, const FixedParameters& fixed) {
+  const auto fix = [&](std::vector<eom::expressions::Table>& tables) {
+    for (eom::expressions::Table& table : tables) fix_parameters(table, fixed);
+  };
+  fix(problem.time.surfaces);
+  fix(problem.time.terms);
+  fix(problem.bounded.events);
+  fix(problem.bounded.narrow);
+  fix_parameters(problem.jumps.values, fixed);
+  fix_parameters(problem.jumps.mass, fixed);
+  for (eom::hybrid::Signal& input : problem.inputs) fix_parameters(input.expression, fixed);
+  for (eom::hybrid::Sample& sample : problem.samples) fix_parameters(sample.times, fixed);
+}
+
 /// The default scene in numbers, and the description of the functions of `program`, for NAME_run.hpp. Throws
 /// Error{stage "emit"} if the run needs expressions that emitted code does not have.
-std::shared_ptr<const emit::RunDescription> run_text(const DerivedModel& derived, const run::Scene& scene,
-                                                     const program::Program& program) {
+std::shared_ptr<const emit::RunDescription> run_text(DerivedModel& derived, const run::Scene& scene,
+                                                     const program::Program& program, const FixedParameters& fixed) {
   auto described = std::make_shared<Described>(Described{scene, describe_code(program), {}});
   const std::vector<std::optional<symbolic::Ref>> kinks(program.kinks.size());
   run::RunRequest request =
@@ -78,6 +135,13 @@ std::shared_ptr<const emit::RunDescription> run_text(const DerivedModel& derived
   // As in `eomgen run`: if something jumps, the run does not change its coordinates.
   if (scene.jumps.functions.empty()) described->problem.charts = exchanged(program);
   if (described->problem.charts.empty()) described->problem.jumps = run::jump_functions(derived.candidates.front());
+  for (std::size_t i = 0; i < derived.model.samples.size(); ++i) {
+    const std::vector<symbolic::Ref> times = times_of(derived.mechanics, derived.model.samples[i]);
+    if (derived.mechanics.dag->symbols(times).empty()) continue;
+    if (auto table = run::make_table(*derived.mechanics.dag, times, run::run_variables(derived.candidates.front())))
+      described->problem.samples[i].times = std::move(*table);
+  }
+  fix_parameters(described->problem, fixed);
   auto text = std::make_shared<emit::RunDescription>();
   if (!(scene.every > 0)) text->rows = default_rows;
   std::vector<std::string> columns = run::state_columns(derived.model);
@@ -271,9 +335,10 @@ Emission emit_model(std::shared_ptr<const model::Model> model, const EmissionReq
   result.certificate = certify(*derived, result.program, {50, emission_points, request.seed, nullptr, wanted.fix});
   require_pass(result.certificate, derived->model);
   emit::EmissionContext context = emission_context(*derived, result.program, scene, result.certificate);
+  fix_sample_times(*derived, wanted.fix, context);
   context.jumps_in_time = run::may_jump_in_time(derived->candidates.front());
   add_start(request, *derived, context);
-  if (has(request.with, "run")) context.run = run_text(*derived, scene, result.program);
+  if (has(request.with, "run")) context.run = run_text(*derived, scene, result.program, wanted.fix);
   if (request.single) emit::convert_to_single(result.program, context);
   result.single_error = context.single_error;
   result.files = archive != nullptr ? archive->make({*derived, result.program, context, request.format_version})

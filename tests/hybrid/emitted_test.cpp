@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <eom/hybrid/external_steps.hpp>
 #include <eom/hybrid/run.hpp>
+#include <eom/hybrid/stepwise_run.hpp>
 #include <eom/output/csv.hpp>
 #include <fstream>
 #include <iterator>
@@ -15,6 +17,7 @@
 
 #include "driven_run.hpp"
 #include "lib/compiled.hpp"
+#include "sampled_run.hpp"
 #include "step_run.hpp"
 #include "support_run.hpp"
 #include "wire_run.hpp"
@@ -72,6 +75,48 @@ TEST_CASE("emitted runs: a jump of a support's velocity and a pulse are resolved
   other.parameters[3] = 0.4;  // t0
   other.parameters[4] = 1.3;  // t1
   CHECK(same_bytes("support_other", other, support_columns()).events.at(0).t == doctest::Approx(0.4).epsilon(1e-15));
+}
+
+TEST_CASE("emitted runs: periods and offsets of samples follow from parameters, as in run") {
+  const eom::hybrid::Code code = sampled_code();
+  eom::hybrid::Problem other = sampled_problem(code);
+  other.parameters[2] = 0.25;  // T
+  const eom::hybrid::RunResult result = same_bytes("sampled_other", other, sampled_columns());
+  // Samples at 1/12 + k/4: four. Those of the period 0.1 would be ten.
+  REQUIRE(code.discrete == 1);
+  CHECK(result.state[2] == 4);
+  other.parameters[2] = -1;
+  CHECK_THROWS_WITH_AS(eom::hybrid::run(other), doctest::Contains("the period of 'sample 1' is -1"),
+                       std::invalid_argument);
+
+  // In pieces, with the period changed on the way: 1/30, 4/30, .., then 0.25/3 + k/4 from t = 0.55 on.
+  eom::hybrid::StepwiseRun run(sampled_problem(code));
+  CHECK(run.advance(0.55, {}).outcome == eom::Outcome::done);
+  CHECK(run.state().back() == 6);
+  std::vector<double> p = sampled_problem(code).parameters;
+  p[2] = 0;
+  CHECK_THROWS_AS(run.set_parameters(p), std::invalid_argument);
+  p[2] = 0.25;
+  run.set_parameters(p);
+  CHECK(run.advance(0.57, {}).outcome == eom::Outcome::done);
+  CHECK(run.state().back() == 6);
+  CHECK(run.advance(1, {}).outcome == eom::Outcome::done);
+  CHECK(run.state().back() == 8);  // 0.5833, 0.8333
+
+  // The same for a caller that integrates itself.
+  eom::hybrid::ExternalSteps steps(sampled_problem(code));
+  CHECK(steps.next_event_time() == doctest::Approx(0.1 / 3));
+  steps.set_parameters(p, 0, sampled_problem(code).start);
+  CHECK(steps.next_event_time() == doctest::Approx(0.25 / 3));
+}
+
+TEST_CASE("samples: one at the time of a change of the period is taken once") {
+  using eom::hybrid::Sample;
+  Sample before{"s", 0.1, 0}, now{"s", 0.25, 0};
+  CHECK(eom::hybrid::last_taken(before, 4, now, 0.5) == 1);  // the one at 0.5 is still to come
+  CHECK(eom::hybrid::last_taken(before, 5, now, 0.5) == 2);  // it was taken
+  CHECK(eom::hybrid::last_taken(before, 4, now, 0.45) == 1);
+  CHECK(eom::hybrid::last_taken(before, eom::hybrid::none_taken, now, 0) == -1);
 }
 
 TEST_CASE("emitted runs: a potential that jumps ends the run with its reason") {

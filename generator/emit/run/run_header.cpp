@@ -91,8 +91,8 @@ std::string text(const eom::hybrid::Noise& noise) {
   return fmt::format("{{{}, {}, {}}}", noise.component, noise.normal, noise.seed);
 }
 std::string text(const eom::hybrid::Sample& sample) {
-  return fmt::format("{{{}, {}, {}, {}, {}}}", text(sample.name), number(sample.every), number(sample.offset),
-                     text(sample.noise), text(sample.reset));
+  return fmt::format("{{{}, {}, {}, {}, {}{}}}", text(sample.name), number(sample.every), number(sample.offset),
+                     text(sample.noise), text(sample.reset), sample.times.empty() ? "" : ", " + text(sample.times));
 }
 std::string text(const eom::hybrid::WatchedEvent& event) {
   const char* direction = event.direction == eom::Direction::any  ? "any"
@@ -258,7 +258,9 @@ std::string used_names(const Problem& p) {
   std::string result;
   const bool signals = std::any_of(p.inputs.begin(), p.inputs.end(),
                                    [](const eom::hybrid::Signal& signal) { return !signal.expression.empty(); });
-  if (signals || !p.time.empty() || !p.bounded.events.empty() || !p.bounded.narrow.empty() ||
+  const bool samples = std::any_of(p.samples.begin(), p.samples.end(),
+                                   [](const eom::hybrid::Sample& sample) { return !sample.times.empty(); });
+  if (signals || samples || !p.time.empty() || !p.bounded.events.empty() || !p.bounded.narrow.empty() ||
       !p.jumps.functions.empty())
     result += "  using eom::expressions::Op;\n";
   if (!p.jumps.functions.empty()) result += "  using Quantity = eom::hybrid::JumpFunctions::Quantity;\n";

@@ -31,6 +31,7 @@ EOM_RUNTIME_INLINE ExternalSteps::ExternalSteps(Problem problem, RuntimeLayout)
   problem_.start.resize(problem_.code->layout().size());
   if (!(span_ > 0)) span_ = 1;
   last_ = floor_ = problem_.t0;
+  evaluate_sample_times(problem_.samples, problem_.parameters);
   find_next_event(problem_.t0);
   integration_ = std::make_unique<Integration>(problem_);
   functions_ = context().events.watched();
@@ -217,6 +218,7 @@ EOM_RUNTIME_INLINE ExternalSteps::State ExternalSteps::save() const {
 
 EOM_RUNTIME_INLINE void ExternalSteps::restore(double t, const std::vector<double>& x, const State& from) {
   problem_.parameters = from.parameters;
+  evaluate_sample_times(problem_.samples, problem_.parameters);
   problem_.start = x;
   problem_.t0 = t;
   floor_ = from.floor;
@@ -235,8 +237,11 @@ EOM_RUNTIME_INLINE void ExternalSteps::restore(double t, const std::vector<doubl
 
 EOM_RUNTIME_INLINE void ExternalSteps::set_parameters(std::span<const double> values, double t,
                                                       const std::vector<double>& x) {
+  const std::vector<Sample> before = problem_.samples;
+  evaluate_sample_times(problem_.samples, values);
   State now = save();
   now.parameters.assign(values.begin(), values.end());
+  move_taken(now.modes.samples_taken, before, problem_.samples, t);
   restore(t, x, now);
   begin_mode(t, x.data(), {});
 }

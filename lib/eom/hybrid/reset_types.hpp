@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "eom/expressions/code.hpp"
+
 namespace eom::hybrid {
 
 /// Simultaneous changes of the state, by values of Code::resets.
@@ -34,6 +36,7 @@ struct Sample {
   double every = 0, offset = 0;  // s
   std::vector<Noise> noise = {};
   Reset reset = {};
+  expressions::Table times = {};  // period and offset, without variables; empty: the given ones
 };
 
 }  // namespace eom::hybrid

@@ -36,7 +36,7 @@ class Resets {
   /// Whether an event or a sample changes the state.
   bool any() const { return has_events_ || !problem_.samples.empty(); }
   /// Begins a run: no sample has been taken.
-  void start() { taken_.assign(problem_.samples.size(), std::numeric_limits<std::int64_t>::min()); }
+  void start() { taken_.assign(problem_.samples.size(), none_taken); }
 
   /// The last sample of each kind that was taken.
   const std::vector<std::int64_t>& taken() const { return taken_; }

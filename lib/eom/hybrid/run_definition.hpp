@@ -37,13 +37,18 @@ inline void require_parameters(const Problem& problem, RunResult& result) {
 
 EOM_RUNTIME_INLINE RunResult run(const Problem& problem, RuntimeLayout) {
   require_functions(problem);
-  if (!problem.time.empty()) {
-    const TimeAnalysis clock =
-        analyse_time_functions(problem.time, problem.parameters, problem.inputs, problem.t0, problem.t1);
+  const bool follow = std::any_of(problem.samples.begin(), problem.samples.end(),
+                                  [](const Sample& sample) { return !sample.times.empty(); });
+  if (!problem.time.empty() || follow) {
     Problem looked = problem;
+    evaluate_sample_times(looked.samples, looked.parameters);
+    for (Sample& sample : looked.samples) sample.times = {};
     looked.time = {};
-    looked.breakpoints = clock.breakpoints;
-    looked.bounds = clock.bounds;
+    TimeAnalysis clock{problem.breakpoints, problem.bounds, {}};
+    if (!problem.time.empty())
+      clock = analyse_time_functions(problem.time, problem.parameters, problem.inputs, problem.t0, problem.t1);
+    looked.breakpoints = std::move(clock.breakpoints);
+    looked.bounds = std::move(clock.bounds);
     RunResult result = run(looked);
     result.time_unresolved_from = clock.unresolved_from;
     return result;

@@ -3,17 +3,23 @@
 // in every run and on every machine: they depend on the seed and the number of the sample only.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "eom/hybrid/problem.hpp"
 
 namespace eom::hybrid {
 
 inline constexpr double most_samples = 1e7;  // of one kind in one run
+inline constexpr std::int64_t none_taken = std::numeric_limits<std::int64_t>::min();
 
 inline double sample_time(const Sample& sample, std::int64_t k) {
   return sample.offset + static_cast<double>(k) * sample.every;
@@ -35,6 +41,38 @@ inline std::optional<std::int64_t> sample_between(const Sample& sample, double f
   const std::int64_t k = first_sample(sample, from - equal_times(from));
   if (sample_time(sample, k) <= until + equal_times(until)) return k;
   return std::nullopt;
+}
+
+/// Evaluates the periods and offsets that follow from parameters. Throws std::invalid_argument, and changes nothing, if
+/// a period is not positive.
+inline void evaluate_sample_times(std::vector<Sample>& samples, std::span<const double> parameters) {
+  std::vector<std::array<double, 2>> times(samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    times[i] = {samples[i].every, samples[i].offset};
+    if (!samples[i].times.empty()) expressions::Code(samples[i].times, parameters).values({}, times[i]);
+    if (!(times[i][0] > 0) || !std::isfinite(times[i][0]) || !std::isfinite(times[i][1]))
+      throw std::invalid_argument("eom::hybrid: the period of '" + samples[i].name + "' is " +
+                                  std::to_string(times[i][0]) + " s with these parameters; it has to be positive");
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    samples[i].every = times[i][0];
+    samples[i].offset = times[i][1];
+  }
+}
+
+/// The last sample that counts as taken at t, after the times of samples have changed from `before` to `now`: one at t
+/// is taken again only if none was at t.
+inline std::int64_t last_taken(const Sample& before, std::int64_t taken, const Sample& now, double t) {
+  const std::int64_t next = first_sample(now, t - equal_times(t));
+  const bool is_at_t = sample_time(now, next) <= t + equal_times(t);
+  const bool was_at_t = taken != none_taken && sample_time(before, taken) >= t - equal_times(t);
+  return is_at_t && was_at_t ? next : next - 1;
+}
+/// The same for all samples.
+inline void move_taken(std::vector<std::int64_t>& taken, const std::vector<Sample>& before,
+                       const std::vector<Sample>& now, double t) {
+  for (std::size_t i = 0; i < taken.size(); ++i)
+    if (!now[i].times.empty()) taken[i] = last_taken(before[i], taken[i], now[i], t);
 }
 
 /// A random integer from a counter (the finalizer of SplitMix64; Steele, Lea, Flood 2014).

@@ -17,6 +17,7 @@
 #include "eom/hybrid/compiled_runtime.hpp"
 #include "eom/hybrid/integration.hpp"
 #include "eom/hybrid/run_options.hpp"
+#include "eom/hybrid/samples.hpp"
 #include "eom/hybrid/stepwise_modes.hpp"
 #include "eom/hybrid/stepwise_run.hpp"
 #include "eom/hybrid/time_analysis.hpp"
@@ -83,6 +84,7 @@ inline StepwiseIntegration::StepwiseIntegration(Problem problem)
       y_(problem_.code->output_names.size()) {
   problem_.power.reset();
   problem_.estimate = false;
+  evaluate_sample_times(problem_.samples, problem_.parameters);
   require_functions(problem_);
   for (const auto* tables : {&functions_.surfaces, &functions_.terms}) {
     for (const expressions::Table& table : *tables) {
@@ -242,9 +244,15 @@ inline void StepwiseIntegration::set_input(std::size_t input, Signal signal) {
 }
 
 inline void StepwiseIntegration::set_parameters(std::span<const double> values) {
+  const std::vector<Sample> before = problem_.samples;
+  evaluate_sample_times(problem_.samples, values);
   problem_.parameters.assign(values.begin(), values.end());
   analysed_until_ = t_;
   rebuild();
+  if (!begun_ || before.empty()) return;
+  Integration::State modes = integration_->save();
+  move_taken(modes.samples_taken, before, problem_.samples, t_);
+  integration_->restore(t_, x_, modes);
 }
 
 /// Makes the components of the run anew, in the same state.
@@ -312,6 +320,7 @@ inline void StepwiseIntegration::restore(const State& from) {
   next_row_ = from.next_row;
   problem_.inputs = from.inputs;
   problem_.parameters = from.parameters;
+  evaluate_sample_times(problem_.samples, problem_.parameters);
   problem_.t0 = t_;
   problem_.t1 = t_ + span_;
   analysed_until_ = -std::numeric_limits<double>::infinity();
