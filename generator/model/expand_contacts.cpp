@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -239,6 +240,20 @@ void ContactTable::pair(const Value& at, const Part& a, const Part& b) {
   begin(at, suffix).entries.push_back({"holonomic", at.span, text_value(at, found[0].gap)});
 }
 
+namespace {
+
+/// The number that is written; none: an expression.
+std::optional<ExactNumber> number_of(const Value& value) {
+  if (!value.is(Value::Kind::integer) && !value.is(Value::Kind::real) && !value.is(Value::Kind::text)) return {};
+  const bool is_negative = value.text.starts_with('-');
+  ExactNumber number = parse_exact_number(std::string_view(value.text).substr(is_negative ? 1 : 0));
+  if (!number.problem.empty()) return {};
+  if (is_negative) number.value = -number.value;
+  return number;
+}
+
+}  // namespace
+
 void ContactTable::limits(const Value& value) {
   if (!value.is(Value::Kind::table) || value.entries.empty())
     fail(value, "has no limits", "write limits = { q = [\"lower\", \"upper\"] }");
@@ -246,6 +261,11 @@ void ContactTable::limits(const Value& value) {
     const std::vector<Value>& ends = list(entry.value, "the limits of " + quote(entry.key));
     if (ends.size() != 2)
       fail(entry.value, fmt::format("gives {} limits of {}", ends.size(), quote(entry.key)),
+           "write [\"lower\", \"upper\"]");
+    const std::array<std::optional<ExactNumber>, 2> numbers{number_of(ends[0]), number_of(ends[1])};
+    if (numbers[0] && numbers[1] && numbers[0]->value >= numbers[1]->value)
+      fail(entry.value,
+           fmt::format("has limits of {} of which the lower one is not below the upper one", quote(entry.key)),
            "write [\"lower\", \"upper\"]");
     begin(ends[0], entry.key + "_lower")
         .entries.push_back({"holonomic", entry.span,

@@ -168,7 +168,7 @@ Noise EventsReader::read_noise(const Entry& entry, const std::string& what) {
     source_.fail(entry.value.span,
                  fmt::format("the noise of '{}' has {} distributions", entry.key, entry.value.entries.size()), remedy);
   const Entry& drawn = entry.value.entries[0];
-  require_kind(Value::Kind::integer, drawn.value, "the seed", remedy);
+  if (!drawn.value.is(Value::Kind::integer)) source_.fail(drawn.value.span, "the seed is not a whole number", remedy);
   const ExactNumber seed = parse_exact_number(drawn.value.text);
   if (!seed.problem.empty() || cln::minusp(seed.value) || seed.value > Rational(4294967295))
     source_.fail(drawn.value.span, "the seed is not between 0 and 4294967295", remedy);
