@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/sensitivities.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <set>
 
 #include "model/names.hpp"
 #include "pipeline/bound_run.hpp"
+#include "work.hpp"
 
 namespace eomgen::analysis {
 namespace {
@@ -53,7 +57,12 @@ std::vector<run::Direction> directions_of(const pipeline::Simulation& simulation
                               request.overrides,     simulation.scene,           run.code.free,
                               run.state_names.size()};
   std::vector<run::Direction> directions;
+  std::set<std::string> seen;
   for (const std::string& name : names) {
+    if (!seen.insert(name).second) {
+      work::warn(fmt::format("warning: derivatives by '{}' are asked for twice\n  remedy: name it once\n", name));
+      continue;
+    }
     require_direction(derived.model, run.code, run.state_names, name);
     directions.push_back(run::find_direction(scene, name));
   }

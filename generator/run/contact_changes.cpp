@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "run/derivative_run.hpp"
+
 namespace eomgen::run {
 namespace {
 
@@ -194,14 +196,6 @@ std::string ended_bounces(const VariationalEquations& in, const ContactSnapshot&
       if (closes && before.solved->hits[j] >= several) return contacts[j].name;
     }
   }
-  return "";
-}
-
-std::string unfollowed_contacts(const RunRequest& request) {
-  if (request.code.contacts.empty() && request.code.contact_set.empty()) return "";
-  const bool resets = std::any_of(request.events.begin(), request.events.end(),
-                                  [](const eom::hybrid::WatchedEvent& event) { return !event.reset.set.empty(); });
-  if (resets || !request.samples.empty()) return "the model has contacts, and events or samples that change its state";
   return "";
 }
 

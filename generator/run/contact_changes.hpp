@@ -72,7 +72,4 @@ std::optional<ImpendingMotion> impending_motion(VariationalEquations& in, const 
 /// The name of a contact that has bounced several times and stays closed from this change on; empty if there is none.
 std::string ended_bounces(const VariationalEquations& in, const ContactSnapshot& before, const ContactSnapshot& after);
 
-/// The reason why derivatives cannot follow the contacts of a run; empty if they can.
-std::string unfollowed_contacts(const RunRequest& request);
-
 }  // namespace eomgen::run

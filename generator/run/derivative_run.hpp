@@ -11,6 +11,9 @@
 
 namespace eomgen::run {
 
+/// Throws Error{stage "run"}: the end has no derivatives for this reason.
+[[noreturn]] void refuse_derivative(const std::string& what);
+
 /// Throws Error{stage "run"} if the end of the run has no derivatives.
 void require_derivatives(const RunRequest& request, const RunResult& result);
 
@@ -27,13 +30,15 @@ class EndComparison {
   EndComparison(const RunRequest& request, const RunResult& result, const std::vector<double>& end)
       : request_(request), result_(result), end_(end) {}
 
-  /// Whether each component agrees within the tolerances, or within 10 of both errors.
+  /// Whether each component agrees within the tolerances, or within 10 of both errors. Without estimates of errors:
+  /// within 1000 tolerances.
   bool agrees(const std::vector<double>& errors) const { return worst(errors) == none; }
   /// Throws Error{stage "run"} if they do not.
   void require(const std::vector<double>& errors) const;
 
  private:
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
+  static constexpr double unknown_errors = 1000;  // tolerances per step, if no run has estimated the errors at the end
   std::size_t worst(const std::vector<double>& errors) const;
 
   const RunRequest& request_;

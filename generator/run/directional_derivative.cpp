@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "run/central_differences.hpp"
-#include "run/variational_equations.hpp"
+#include "run/derivative_run.hpp"
 
 namespace eomgen::run {
 namespace {
@@ -54,9 +54,20 @@ double largest_magnitude(const std::vector<double>& values) {
   return size;
 }
 
-DifferenceScales::DifferenceScales(const Scene& scene, const RunResult& motion)
-    : span(scene.t1 - scene.t0), states(motion.state) {
+DifferenceScales::DifferenceScales(const RunRequest& request, const RunResult& motion)
+    : span(request.scene.t1 - request.scene.t0), states(motion.state) {
+  const Scene& scene = request.scene;
+  const std::vector<std::uint32_t>& free = request.code.free;
+  const std::size_t n = free.size(), first_order = request.code.layout().first_order_begin();
   for (double& state : states) state = std::abs(state);
+  const auto starts_at = [this](std::size_t i, double value) { states[i] = std::max(states[i], std::abs(value)); };
+  for (std::size_t i = 0; i < n; ++i) {
+    starts_at(i, scene.q[free[i]]);
+    starts_at(n + i, scene.qdot[free[i]]);
+    if (span > 0) starts_at(n + i, states[i] / span);  // of a motion from rest to rest
+  }
+  for (std::size_t i = 0; i < scene.z.size() && first_order + i < states.size(); ++i)
+    starts_at(first_order + i, scene.z[i]);
 }
 
 double DifferenceScales::magnitude(const std::vector<double>& x) const {

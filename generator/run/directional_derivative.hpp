@@ -21,12 +21,12 @@ using FunctionOfState = std::function<std::vector<double>(double t, std::vector<
 /// The scales of differences: the span of the run, and the magnitudes of its states. These count for a state near 0,
 /// which has no scale of its own: a body at rest in the origin.
 struct DifferenceScales {
-  static constexpr double near_zero = 1e-9;  // of the states at the end of the run
+  static constexpr double near_zero = 1e-9;  // of the states of the run
 
   double span;
-  std::vector<double> states;  // magnitudes at the end of the run
+  std::vector<double> states;  // magnitudes at the start and the end of the run
 
-  DifferenceScales(const Scene& scene, const RunResult& motion);
+  DifferenceScales(const RunRequest& request, const RunResult& motion);
   /// The magnitude of a state, or of those of the run if it is near 0.
   double magnitude(const std::vector<double>& x) const;
 };

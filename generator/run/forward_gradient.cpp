@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "run/central_differences.hpp"
+#include "run/derivative_run.hpp"
 #include "run/directional_derivative.hpp"
 #include "run/variational_jumps.hpp"
 

@@ -17,7 +17,6 @@
 #include "run/directional_derivative.hpp"
 #include "run/forward_gradient.hpp"
 #include "run/lost_rank.hpp"
-#include "run/methods.hpp"
 #include "run/trajectory.hpp"
 #include "run/variational.hpp"
 #include "run/variational_jumps.hpp"
@@ -173,7 +172,7 @@ class GradientRun {
     const auto surfaces = [&](double t, const double* x, double* g) { return context.events(t, x, g); };
     const auto observe = [&](const eom::StepView& step) {
       trajectory_.add(step);
-      jumps_.settle_branches(step.t1, step.x1.data());
+      jumps_.observe_state(step.t1, step.x1.data());
       note_mode();
       return true;
     };

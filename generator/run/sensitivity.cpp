@@ -8,7 +8,6 @@
 
 #include "run/derivative_run.hpp"
 #include "run/lost_rank.hpp"
-#include "run/methods.hpp"
 #include "run/variational.hpp"
 
 namespace eomgen::run {

@@ -160,7 +160,7 @@ class VariationalRun::Run {
       return jumps_.cross_event(point) ? eom::EventAction::restart : eom::EventAction::resume;
     };
     const auto observe = [&](const eom::StepView& step) {
-      jumps_.settle_branches(step.t1, step.x1.data());
+      jumps_.observe_state(step.t1, step.x1.data());
       return true;
     };
     return eom::integrate_events(solver_, eom::system_of(*this), from.t, from.x, end, options, surfaces,

@@ -8,6 +8,7 @@
 
 #include "run/central_differences.hpp"
 #include "run/contact_changes.hpp"
+#include "run/derivative_run.hpp"
 #include "run/variational_jumps.hpp"
 
 namespace eomgen::run {

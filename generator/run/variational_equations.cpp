@@ -7,6 +7,7 @@
 
 #include "error.hpp"
 #include "run/bind.hpp"
+#include "run/derivative_run.hpp"
 
 namespace eomgen::run {
 
@@ -28,11 +29,6 @@ Problem problem_of(const RunRequest& request, const std::string& solver) {
   Problem problem = make_problem(request, solver);
   problem.power.reset();  // the work is not part of the state here
   return problem;
-}
-
-void refuse_derivative(const std::string& what) {
-  throw Error("run", {}, "no derivatives of the end: " + what,
-              "compare runs with changed values (--set), or sweep over them");
 }
 
 std::vector<DueSample> due_samples(const Problem& problem, double from, double until) {

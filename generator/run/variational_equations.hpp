@@ -63,7 +63,4 @@ void take_samples(VariationalEquations& in, const std::vector<DueSample>& due, d
 /// undetermined.
 void apply_reset(VariationalEquations& in, std::size_t i, double t, std::vector<double>& x);
 
-/// Throws Error{stage "run"}.
-[[noreturn]] void refuse_derivative(const std::string& what);
-
 }  // namespace eomgen::run

@@ -10,6 +10,7 @@
 #include "lists.hpp"
 #include "run/central_differences.hpp"
 #include "run/contact_changes.hpp"
+#include "run/derivative_run.hpp"
 
 namespace eomgen::run {
 namespace {
@@ -22,7 +23,7 @@ VariationalJumps::VariationalJumps(const RunRequest& request, const RunResult& m
                                    const std::vector<Direction>& directions)
     : scene_(request.scene),
       motion_(motion),
-      scales_(request.scene, motion),
+      scales_(request, motion),
       directions_(directions),
       own_(problem_of(request, solver), kink_times(request.scene)),
       n_(own_.problem.states()),

@@ -60,8 +60,9 @@ class VariationalJumps {
   bool cross_event(const eom::EventPoint& point);
   /// Before cross_event(), at the surface of a kink whose branch still follows the state: it gets its side before.
   void settle_branch(const eom::Crossing& crossing);
-  /// After a step to (t, x): branches that still follow the state get the side to which it has moved.
-  void settle_branches(double t, const double* x) { own_.context.freeze_branches(t, x, false); }
+  /// After a step to (t, x): branches that still follow the state get the side to which it has moved, and slip that has
+  /// just begun its own direction.
+  void observe_state(double t, const double* x) { own_.context.observe_state(t, x); }
 
   /// Whether the state lay on the surface of a jump, off which changes of the state alone lead: derivatives exist if
   /// the directions that are wanted do not.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "run/central_differences.hpp"
+#include "run/derivative_run.hpp"
 #include "run/variational_jumps.hpp"
 
 namespace eomgen::run {

@@ -4,16 +4,23 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <string>
 
 #include "program.hpp"
+#include "support/folders.hpp"
 
 using namespace eomgen::test;
 
 namespace {
 
 constexpr double differences = 1e-6;  // of order 4, from runs at rtol 1e-12
+
+void copy_model(const Folder& folder, const std::string& name) {
+  std::filesystem::copy_file(source_folder() + "/models/" + name + ".toml", folder / "model.toml",
+                             std::filesystem::copy_options::overwrite_existing);
+}
 
 /// Derivatives of the final state of model.toml by some values.
 Json values_of_derivatives(const Folder& folder, const std::string& by) {
@@ -178,6 +185,17 @@ TEST_CASE("sensitivity: slip in two directions that ends and begins agrees with 
   agree(found, folder, "k", 5, {"x", "y", "x_dot", "y_dot"});
   agree(found, folder, "u", 0.5, {"x", "y", "x_dot", "y_dot"});
   agree(found, folder, "m", 1, {"x", "y", "x_dot", "y_dot"});
+}
+
+TEST_CASE("sensitivity: shipped models at their default tolerances, through slip that begins and ends") {
+  const Folder folder;
+  copy_model(folder, "R6_rough_disk");
+  const Json of_disk = values_of_derivatives(folder, "mu_d,m");
+  agree(of_disk, folder, "mu_d", 0.3, {"x1", "phi", "theta_dot"});
+  CHECK(std::abs(of_disk["m"]["phi"].get<double>()) < 1e-7);  // weights and inertias are in proportion
+  // It is held at last by a circle that moves: the start and the end have no scale for the speed in between.
+  copy_model(folder, "P6_rough_circle");
+  agree(values_of_derivatives(folder, "mu_d"), folder, "mu_d", 0.2, {"theta"});
 }
 
 TEST_CASE("sensitivity: slip in two directions of contacts whose forces are solved for") {

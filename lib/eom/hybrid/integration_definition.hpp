@@ -206,9 +206,7 @@ EOM_RUNTIME_INLINE bool Integration::observe_step(const StepView& step, const Ob
     }
   }
   const bool wanted = !observer || observer(step);
-  context_.freeze_branches(step.t1, step.x1.data(), false);
-  if (context_.contacts) context_.contacts->update_min_slip(step.t1, step.x1.data());
-  if (context_.solved_contacts) context_.solved_contacts->update(step.x1.data());
+  context_.observe_state(step.t1, step.x1.data());
   if (is_crossing_singularity_) singularity_step_->report(step, event);
   exchange_due_ = exchange_due_ && wanted;
   slow_slip_.set_switch_due(wanted && slow_slip_.must_switch(step.t1, step.x1.data()));

@@ -122,6 +122,13 @@ struct RunContext {
     if (anew) slide_from_surfaces(t, x);
   }
 
+  /// To be called at the end of each accepted step: what the equations remember of the motion so far.
+  void observe_state(double t, const double* x) {
+    freeze_branches(t, x, false);
+    if (contacts) contacts->update_min_slip(t, x);
+    if (solved_contacts) solved_contacts->update(x);
+  }
+
   /// A state that a jump moved away from a surface slides along it no longer.
   void leave_surfaces(double t, const double* x) {
     if (model.sliding_kinks().empty() || model.surfaces(t, x, g.data()) != 0) return;
