@@ -19,7 +19,6 @@
 #include "error.hpp"
 #include "lists.hpp"
 #include "model/names.hpp"
-#include "run/methods.hpp"
 #include "symbolic/evaluate.hpp"
 #include "system/equation_system.hpp"
 

@@ -2,7 +2,7 @@
 #include "pipeline/simulate.hpp"
 
 #include <algorithm>
-#include <eom/hybrid/solved_contacts.hpp>
+#include <eom/contacts/description.hpp>
 #include <eom/modes/contacts.hpp>
 #include <eom/registry.hpp>
 #include <limits>
@@ -76,8 +76,8 @@ eom::hybrid::BoundedFunctions bounded_functions(const DerivedModel& derived,
     }
   }
   for (const system::ContactWithInputs& contact : system.contacts_with_inputs) {
-    functions.resize(functions.size() + eom::hybrid::SolvedContacts::values_per_contact);
-    if (contact.unilateral) functions[functions.size() - eom::hybrid::SolvedContacts::values_per_contact] = contact.gap;
+    functions.resize(functions.size() + eom::contacts::values_per_contact);
+    if (contact.unilateral) functions[functions.size() - eom::contacts::values_per_contact] = contact.gap;
   }
   eom::hybrid::BoundedFunctions bounded;
   if (!functions.empty()) bounded.events = run::bounded_events(system, functions);

@@ -28,6 +28,9 @@ struct Row {
 
 inline constexpr std::size_t none = static_cast<std::size_t>(-1);
 
+/// Event functions of each contact.
+inline constexpr std::size_t values_per_contact = 3;
+
 /// Indices are those of values in the array c, and of inputs in the array u.
 struct Description {
   std::string name;

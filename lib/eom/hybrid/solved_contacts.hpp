@@ -29,7 +29,7 @@ namespace eom::hybrid {
 
 class SolvedContacts {
  public:
-  static constexpr std::size_t values_per_contact = 3;
+  static constexpr std::size_t values_per_contact = contacts::values_per_contact;
   /// `changed`: called after velocities change, with the state before and after. Returns the work.
   using Changed = std::function<double(double t, std::span<const double> before, std::span<const double> after)>;
 
