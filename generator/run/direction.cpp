@@ -27,6 +27,13 @@ constexpr int first_step = -5, smaller_steps = -4, most_steps = 3;
   throw Error("run", {}, "no derivatives of the end: " + what, remedy);
 }
 
+/// The scene with another value.
+Scene scene_with(const ModelScene& of, const std::string& name, double value) {
+  Overrides overrides = of.overrides;
+  overrides.values[name] = numeric::exact(value);
+  return resolve_scene(of.mechanics, of.system, of.asked, overrides);
+}
+
 std::vector<double> table_values(const Scene& scene) {
   std::vector<double> values;
   for (const Signal& input : scene.inputs) {
@@ -39,7 +46,7 @@ std::vector<double> table_values(const Scene& scene) {
 class DirectionFinder {
  public:
   DirectionFinder(const ModelScene& of, const std::string& name)
-      : of_(of), direction_{name, 1, 0, {}, {}, {}, 0, 0, {}, {}} {
+      : of_(of), direction_{name, 1, 0, {}, {}, {}, 0, 0, {}, {}, {}} {
     const std::optional<double> value = value_of(of.scene);
     if (!value)
       refuse(fmt::format("'{}' is no value of the start", name), "ask for a parameter, a coordinate or a state");
@@ -60,6 +67,9 @@ class DirectionFinder {
         refuse(fmt::format("{} with {}", obstacle, direction_.name), "compare runs with changed values (--set)");
     }
     find_input_derivatives();
+    direction_.changed = [of = of_, name = direction_.name, value = value_](double offset) {
+      return scene_with(of, name, value + offset);
+    };
     return std::move(direction_);
   }
 
@@ -111,11 +121,7 @@ class DirectionFinder {
     return noise;
   }
 
-  Scene changed(double offset) const {
-    Overrides overrides = of_.overrides;
-    overrides.values[direction_.name] = numeric::exact(value_ + offset);
-    return resolve_scene(of_.mechanics, of_.system, of_.asked, overrides);
-  }
+  Scene changed(double offset) const { return scene_with(of_, direction_.name, value_ + offset); }
 
   /// A start that is not given may have other consequences once it is.
   void require_same_start() const {

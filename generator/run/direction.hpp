@@ -4,6 +4,7 @@
 // is changed (`--set NAME=..`), so that whatever follows from it changes too.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct Direction {
   double dt0 = 0, dt1 = 0;    // of the span
   std::vector<double> dt;     // of the times in kink_times()
   std::vector<Signal> du;     // of the inputs at fixed t; empty: none depends on the value
+  std::function<Scene(double offset)> changed = {};  // the scene with the value changed by any other offset
 };
 
 /// The model and scene that a direction refers to.
@@ -34,8 +36,9 @@ struct ModelScene {
   std::size_t states;
 };
 
-/// The direction of a parameter or of a value of the start ("theta", "theta_dot", a state of first order). Throws
-/// Error{stage "run"} if the scene does not follow a change of it, or not smoothly.
+/// What `of` refers to has to outlive the direction. The direction of a parameter or of a value of the start ("theta",
+/// "theta_dot", a state of first order). Throws Error{stage "run"} if the scene does not follow a change of it, or not
+/// smoothly.
 Direction find_direction(const ModelScene& of, const std::string& name);
 
 /// Times inside the span of a scene at which an input or a function of time jumps or bends, or a sample is taken:

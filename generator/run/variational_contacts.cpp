@@ -115,12 +115,10 @@ bool VariationalJumps::change_contact(const eom::EventPoint& point) {
       if (!same) return fmt::format("beside the motion, a contact changes to another mode at t = {}", t);
       return fmt::format("the change of a contact at t = {} does not change smoothly with {}", t, direction.name);
     };
-    std::vector<std::vector<double>> beside;
-    for (const auto& neighbour : neighbours(d)) {
-      neighbour->enter(segment_);
-      beside.push_back(follow(*neighbour, t, own));
-    }
-    const std::vector<double> of_scene = own_slopes(d, follow(own_, t, own), beside, what);
+    const std::vector<double> of_scene = by_scene(d, follow(own_, t, own), what, [&](VariationalEquations& in) {
+      in.enter(segment_);
+      return follow(in, t, own);
+    });
     std::vector<double> slope =
         derivative_along(scales_, t, own, times[d], s, what,
                          [&](double at, std::vector<double> state) { return follow(own_, at, std::move(state)); });

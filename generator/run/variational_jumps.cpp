@@ -163,16 +163,15 @@ void VariationalJumps::change_by_impulse(const std::vector<double>& x, const std
                                          std::vector<double>& out) {
   const Direction& direction = directions_[d];
   const std::vector<double> own = state_of(x);
-  std::vector<std::vector<double>> beside;
-  for (const auto& neighbour : neighbours(d)) {
-    beside.push_back(own);
-    cross(*neighbour, beside.back());
-  }
   const auto what = [&] {
     return fmt::format("the impulse at t = {} does not change smoothly with {}", own_.kinks[segment_].before,
                        direction.name);
   };
-  const std::vector<double> of_scene = own_slopes(d, after, beside, what);
+  const std::vector<double> of_scene = by_scene(d, after, what, [&](VariationalEquations& in) {
+    std::vector<double> crossed = own;
+    cross(in, crossed);
+    return crossed;
+  });
   const std::vector<double> of_state =
       derivative_along(scales_, 0, own, 0, sensitivity(x, d), what, [&](double, std::vector<double> at) {
         cross(own_, at);
@@ -193,12 +192,11 @@ void VariationalJumps::change_by_samples(const std::vector<DueSample>& due, eom:
       return fmt::format("the sample '{}' at t = {} does not change the state smoothly with {}",
                          own_.problem.samples[due.front().kind].name, total.t, direction.name);
     };
-    std::vector<std::vector<double>> beside;
-    for (const auto& neighbour : neighbours(d)) {
-      beside.push_back(own);
-      take_samples(in_segment(*neighbour), due, total.t, beside.back());
-    }
-    const std::vector<double> of_scene = own_slopes(d, after, beside, what);
+    const std::vector<double> of_scene = by_scene(d, after, what, [&](VariationalEquations& in) {
+      std::vector<double> taken = own;
+      take_samples(in_segment(in), due, total.t, taken);
+      return taken;
+    });
     const std::vector<double> of_state =
         derivative_along(scales_, total.t, own, dt[d] / direction.scale, sensitivity(x, d), what,
                          [&](double at, std::vector<double> state) {
@@ -210,22 +208,26 @@ void VariationalJumps::change_by_samples(const std::vector<DueSample>& due, eom:
   std::copy(after.begin(), after.end(), total.x.begin());
 }
 
-/// Derivatives along the scenes beside that of the run. beside: the values in each.
-std::vector<double> VariationalJumps::own_slopes(std::size_t d, const std::vector<double>& middle,
-                                                 const std::vector<std::vector<double>>& beside,
-                                                 const Described& what) const {
-  if (beside.empty()) return std::vector<double>(middle.size(), 0.0);
-  Slopes found = slopes(middle, beside, directions_[d].step);
-  if (!found.smooth) refuse_derivative(what());
-  return found.value;
+/// The derivative of values by everything in the scene. middle: the values of the run. Where a contact changes to
+/// another mode in scenes that are far away, nearer ones show it.
+std::vector<double> VariationalJumps::by_scene(std::size_t d, const std::vector<double>& middle, const Described& what,
+                                               const ValuesBeside& values) {
+  const Direction& direction = directions_[d];
+  if (direction.beside.empty()) return std::vector<double>(middle.size(), 0.0);
+  for (int nearness = 0; nearness < nearnesses; ++nearness) {
+    std::vector<std::vector<double>> beside;
+    for (const auto& neighbour : neighbours(d, NeighbourInputs::of_scene, nearness))
+      beside.push_back(values(*neighbour));
+    Slopes found = slopes(middle, beside, step_of(direction, nearness));
+    if (found.smooth) return found.value;
+  }
+  refuse_derivative(what());
 }
 
 /// The derivative of values at (t, x) along direction d at fixed t and x: by everything in the scene.
 std::vector<double> VariationalJumps::by_scene(std::size_t d, double t, const std::vector<double>& x,
                                                const Described& what, const ValuesIn& values) {
-  std::vector<std::vector<double>> beside;
-  for (const auto& neighbour : neighbours(d)) beside.push_back(values(in_segment(*neighbour), t, x));
-  return own_slopes(d, values(own_, t, x), beside, what);
+  return by_scene(d, values(own_, t, x), what, [&](VariationalEquations& in) { return values(in_segment(in), t, x); });
 }
 
 /// At an event that changes the state. False: its condition does not hold.
@@ -250,12 +252,11 @@ bool VariationalJumps::reset(const eom::EventPoint& point) {
       return fmt::format("the event '{}' at t = {} does not change smoothly with {}", name, t, direction.name);
     };
     times.push_back(time_change(i, t, x, d));
-    std::vector<std::vector<double>> beside;
-    for (const auto& neighbour : neighbours(d)) {
-      beside.push_back(own);
-      apply_reset(in_segment(*neighbour), i, t, beside.back());
-    }
-    const std::vector<double> of_scene = own_slopes(d, after, beside, what);
+    const std::vector<double> of_scene = by_scene(d, after, what, [&](VariationalEquations& in) {
+      std::vector<double> reset = own;
+      apply_reset(in_segment(in), i, t, reset);
+      return reset;
+    });
     std::vector<double> s = sensitivity(x, d);
     for (std::size_t k = 0; k < n_; ++k) s[k] += before[k] * times[d];
     const std::vector<double> of_state =
@@ -331,17 +332,31 @@ VariationalEquations& VariationalJumps::in_segment(VariationalEquations& neighbo
   return neighbour;
 }
 
+void VariationalJumps::set_tolerances(double rtol, double atol, bool coarse) {
+  own_.problem.rtol = rtol;
+  own_.problem.atol = atol;
+  own_.set_tolerances(rtol, atol, coarse);
+  for (Neighbours& neighbours : neighbours_) neighbours.clear();
+  neighbours_of_same_times_.clear();
+}
+
+double VariationalJumps::step_of(const Direction& direction, int nearness) {
+  constexpr int nearer = -4;  // power of 2
+  return std::ldexp(direction.step, nearness * nearer);
+}
+
 const std::vector<std::unique_ptr<VariationalEquations>>& VariationalJumps::neighbours(std::size_t d,
-                                                                                       NeighbourInputs inputs) {
+                                                                                       NeighbourInputs inputs,
+                                                                                       int nearness) {
   const bool of_scene = inputs == NeighbourInputs::of_scene;
-  Neighbours& all = of_scene ? neighbours_ : neighbours_of_same_times_;
+  Neighbours& all = of_scene ? neighbours_.at(static_cast<std::size_t>(nearness)) : neighbours_of_same_times_;
   all.resize(directions_.size());
   std::vector<std::unique_ptr<VariationalEquations>>& made = all[d];
   if (made.empty()) {
     const Direction& direction = directions_[d];
-    const std::vector<double> offsets = difference_offsets(direction.step);
+    const std::vector<double> offsets = difference_offsets(step_of(direction, nearness));
     for (std::size_t k = 0; k < direction.beside.size(); ++k) {
-      const Scene& scene = direction.beside[k];
+      const Scene scene = nearness == 0 ? direction.beside[k] : direction.changed(offsets[k]);
       eom::hybrid::Problem problem = problem_in(scene, own_.problem);
       for (std::size_t i = 0; i < scene_.inputs.size() && !of_scene; ++i) {
         if (scene_.inputs[i].runtime_signal().expression.empty()) continue;  // a table, in its own segment

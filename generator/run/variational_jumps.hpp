@@ -4,6 +4,7 @@
 // a run, directions, the state x with every s. Out: x and every s behind the interruption.
 #pragma once
 
+#include <array>
 #include <eom/events/integrate.hpp>
 #include <functional>
 #include <memory>
@@ -48,6 +49,8 @@ class VariationalJumps {
   // The following change total.x or point.x: x, then s of each direction times its scale. False of those with a result:
   // f has no value, and the run ends. All throw Error{stage "run"} if an interruption does not follow smoothly.
 
+  /// Of the integration that follows. coarse: those of slip in two directions, where rounding ended an earlier one.
+  void set_tolerances(double rtol, double atol, bool coarse = false);
   /// At the start: the samples there, and s at the fixed time t0.
   bool start(eom::Result& total);
   /// At the end of a segment that is not the last one. The next one begins.
@@ -69,13 +72,18 @@ class VariationalJumps {
   bool is_on_jump() const { return is_on_jump_; }
 
   /// The scenes beside that of the run along direction d, with the contacts in its modes.
+  /// nearness: from 0, those of the direction, to nearnesses - 1.
   const std::vector<std::unique_ptr<VariationalEquations>>& neighbours(
-      std::size_t d, NeighbourInputs inputs = NeighbourInputs::of_scene);
+      std::size_t d, NeighbourInputs inputs = NeighbourInputs::of_scene, int nearness = 0);
+  static constexpr int nearnesses = 3;
   /// A scene beside that of the run, in the segment and the mode of the run.
   VariationalEquations& in_segment(VariationalEquations& neighbour);
 
  private:
   using ValuesIn = std::function<std::vector<double>(VariationalEquations& in, double t, const std::vector<double>& x)>;
+  using ValuesBeside = std::function<std::vector<double>(VariationalEquations& in)>;
+  std::vector<double> by_scene(std::size_t d, const std::vector<double>& middle, const Described& what,
+                               const ValuesBeside& values);
   std::vector<double> by_scene(std::size_t d, double t, const std::vector<double>& x, const Described& what,
                                const ValuesIn& values);
   std::vector<double> state_of(const std::vector<double>& x) const;
@@ -105,8 +113,7 @@ class VariationalJumps {
   double size_of_terms(const ValuesIn& value, double t, const std::vector<double>& x);
   double time_change(const ValuesIn& value, double t, const std::vector<double>& x, std::size_t d);
   double time_change(std::size_t function, double t, const std::vector<double>& x, std::size_t d);
-  std::vector<double> own_slopes(std::size_t d, const std::vector<double>& middle,
-                                 const std::vector<std::vector<double>>& beside, const Described& what) const;
+  static double step_of(const Direction& direction, int nearness);
   std::optional<std::size_t> stopping_event() const;
   bool rhs(double t, const double* x, std::vector<double>& f) { return own_.context.rhs(t, x, f.data()) == 0; }
 
@@ -119,7 +126,8 @@ class VariationalJumps {
   bool is_on_jump_ = false;
   std::vector<double> f_;
   using Neighbours = std::vector<std::vector<std::unique_ptr<VariationalEquations>>>;
-  Neighbours neighbours_, neighbours_of_same_times_;  // per direction, made where needed
+  std::array<Neighbours, nearnesses> neighbours_;  // per direction, made where needed
+  Neighbours neighbours_of_same_times_;
 };
 
 }  // namespace eomgen::run
