@@ -121,6 +121,7 @@ class GradientRun {
     trajectory_ = Trajectory(n_, get_method(solver_).dense_order, budget);
     history_.clear();
     adjoint_evaluations_ = 0;
+    jumps_.set_tolerances(options.rtol, options.atol);
     eom::Result total;
     total.t = scene_.t0;
     total.x = extended(jumps_.equations().context.own_start());

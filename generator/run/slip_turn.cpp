@@ -19,6 +19,26 @@ bool slips_in_two_directions(const contacts::ContactForces& forces, std::size_t 
   return at.slip.size() == 2 && at.sticks && at.width == contacts::none && forces.has_friction(j);
 }
 
+/// The derivative of the angle of friction at slip w by a change of this slip: that of led_direction() of
+/// slip_start.hpp.
+double turn_of(const contacts::ContactForces& forces, std::size_t j, const std::array<double, 2>& w,
+               const std::array<double, 2>& change) {
+  const double speed = std::hypot(w[0], w[1]), least = forces.least_slip(), end = forces.start_slip();
+  if (!(speed > least)) return 0;  // it keeps the direction in which it began
+  const std::array<double, 2> n{w[0] / speed, w[1] / speed};
+  const double along = n[0] * change[0] + n[1] * change[1], turn = (n[0] * change[1] - n[1] * change[0]) / speed;
+  const contacts::ContactState& state = forces.states()[j];
+  if (!state.starts || speed >= end) return turn;
+  const std::array<double, 2>& began = state.direction;
+  const double own = (speed - least) / (end - least), own_change = along / (end - least);
+  const std::array<double, 2> sum{(1 - own) * began[0] + own * n[0], (1 - own) * began[1] + own * n[1]};
+  const double square = sum[0] * sum[0] + sum[1] * sum[1];
+  if (!(square > 0)) return 0;
+  const std::array<double, 2> change_of_sum{own_change * (n[0] - began[0]) - own * turn * n[1],
+                                            own_change * (n[1] - began[1]) + own * turn * n[0]};
+  return (sum[0] * change_of_sum[1] - sum[1] * change_of_sum[0]) / square;
+}
+
 }  // namespace
 
 SlipTurn::SlipTurn(VariationalEquations& own, double t, const double* x) : own_(own) {
@@ -73,11 +93,7 @@ int SlipTurn::add_turn(double t, const double* x, const Slips& rates, double* sl
   std::vector<double> turns(contacts_.size());  // d angle
   double fastest = 0;
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    const Contact& at = contacts_[k];
-    const double speed = std::hypot(at.slip[0], at.slip[1]);
-    // A slip without a direction of its own keeps that in which it began (slip_start.hpp).
-    if (!(speed > forces.least_slip())) continue;
-    turns[k] = (at.slip[0] * rates[k][1] - at.slip[1] * rates[k][0]) / (speed * speed);
+    turns[k] = turn_of(forces, contacts_[k].place, contacts_[k].slip, rates[k]);
     fastest = std::max(fastest, std::abs(turns[k]));
   }
   if (!(fastest > 0)) return 0;

@@ -38,20 +38,12 @@ class VariationalRun::Run {
         slopes_(n_ * directions.size()) {}
 
   eom::Result run(const eom::Options& options) {
-    eom::Result total;
-    total.t = scene_.t0;
-    total.x = start();
-    if (!jumps_.start(total)) return total;
-    for (;;) {
-      eom::Result part = integrate(total, jumps_.segment_end(), options);
-      part.statistics += total.statistics;
-      total = std::move(part);
-      if (total.outcome != eom::Outcome::done) return total;
-      if (jumps_.is_last_segment()) break;
-      if (!jumps_.cross_kink_in_time(total)) return total;
-    }
-    jumps_.end(total);
-    return total;
+    eom::Result result = run(options, false);
+    if (result.outcome != eom::Outcome::step_too_small || !jumps_.equations().has_slip_of_two()) return result;
+    const eom::Statistics first = result.statistics;
+    result = run(options, true);
+    result.statistics += first;
+    return result;
   }
 
   VariationalJumps& jumps() { return jumps_; }
@@ -64,9 +56,10 @@ class VariationalRun::Run {
     eom::hybrid::Model& model = context.model;
     const double* u = model.inputs(t);
     std::copy(u, u + u_.size(), u_.begin());
-    if (const int code = derivatives(t, x, model.mode().data()); code != 0) {
+    const double* const at = model.led_state(t, x, u_.data());
+    if (const int code = derivatives(t, at, model.mode().data()); code != 0) {
       // As for f: a branch that is frozen beyond its surface may have no value there.
-      if (derivatives(t, x, nullptr) != 0) return code;
+      if (derivatives(t, at, nullptr) != 0) return code;
     }
     std::fill(slopes_.begin(), slopes_.end(), 0.0);
     for (std::size_t d = 0; d < directions_.size(); ++d) {
@@ -84,6 +77,24 @@ class VariationalRun::Run {
   }
 
  private:
+  eom::Result run(const eom::Options& options, bool coarse) {
+    eom::Result total;
+    jumps_.set_tolerances(options.rtol, options.atol, coarse);
+    total.t = scene_.t0;
+    total.x = start();
+    if (!jumps_.start(total)) return total;
+    for (;;) {
+      eom::Result part = integrate(total, jumps_.segment_end(), options);
+      part.statistics += total.statistics;
+      total = std::move(part);
+      if (total.outcome != eom::Outcome::done) return total;
+      if (jumps_.is_last_segment()) break;
+      if (!jumps_.cross_kink_in_time(total)) return total;
+    }
+    jumps_.end(total);
+    return total;
+  }
+
   std::vector<double> start() {
     std::vector<double> x = jumps_.equations().context.own_start();
     for (const Direction& d : directions_) {

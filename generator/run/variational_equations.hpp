@@ -18,19 +18,30 @@ namespace eomgen::run {
 struct VariationalEquations {
   VariationalEquations(eom::hybrid::Problem of, std::vector<eom::hybrid::Breakpoint> times)
       : problem(std::move(of)), kinks(std::move(times)), context(problem), resets(context) {
-    // The derivatives of slip in two directions have its rounding errors, divided by its least speed.
-    constexpr double least_slip = 1e-8;
-    if (context.contacts)
-      context.contacts->set_tolerances(std::max(problem.rtol, least_slip), std::max(problem.atol, 1e-3 * least_slip));
-    const std::vector<eom::contacts::Description>& solved = problem.code->contact_set.contacts;
-    if (context.solved_contacts && std::any_of(solved.begin(), solved.end(), [](const auto& contact) {
-          return contact.sticks && contact.slip.size() == 2;
-        }))
-      context.solved_contacts->set_tolerances(std::max(problem.rtol, least_slip),
-                                              std::max(problem.atol, 1e-3 * least_slip));
+    set_tolerances(problem.rtol, problem.atol);
   }
   VariationalEquations(const VariationalEquations&) = delete;
   VariationalEquations& operator=(const VariationalEquations&) = delete;
+
+  /// Of slip. One in two directions has no direction at first: the derivatives of its start have an error in proportion
+  /// to the slip that counts as none. Rounding, divided by this slip, has to stay below the error control.
+  /// coarse: rounding did not.
+  void set_tolerances(double rtol, double atol, bool coarse = false) {
+    constexpr double least = 1e-8, part = 1e-2, rounding = 1e-19;
+    const bool fine = !coarse && has_slip_of_two();
+    const double relative = fine ? std::max(part * rtol, std::min(least, rounding / rtol)) : std::max(rtol, least),
+                 absolute = std::max((fine ? part : 1) * atol, 1e-3 * relative);
+    if (context.contacts) context.contacts->set_tolerances(relative, absolute);
+    if (context.solved_contacts && has_slip_of_two()) context.solved_contacts->set_tolerances(relative, absolute);
+  }
+
+  /// Whether a contact slips in two directions.
+  bool has_slip_of_two() const {
+    const std::vector<eom::contacts::Description>& solved = problem.code->contact_set.contacts;
+    const std::vector<eom::Contact>& compiled = problem.code->contacts;
+    return std::any_of(solved.begin(), solved.end(), [](const auto& c) { return c.sticks && c.slip.size() == 2; }) ||
+           std::any_of(compiled.begin(), compiled.end(), [](const eom::Contact& c) { return c.dimensions == 2; });
+  }
 
   double end_of(std::size_t segment) const { return segment < kinks.size() ? kinks[segment].before : problem.t1; }
   double begin_of(std::size_t segment) const { return segment > 0 ? kinks[segment - 1].after : problem.t0; }

@@ -188,7 +188,7 @@ class Model {
     if (sliding_.any()) return sliding_.evaluate(mode_, t, x, dx);
     if (const int code = solve_contacts(t, x, contacts::ForceChoice::any); code != 0) return code;
     const double* u = inputs(t);
-    const double* const at = is_slip_starting() ? slip_starts_->lead(t, x, u) : x;
+    const double* const at = led_state(t, x, u);
     int code = motion(t, at, u, mode_.data(), dx);
     // A branch that is frozen beyond its surface may have no value there (a root). The unfrozen expression always has
     // one.
@@ -199,6 +199,11 @@ class Model {
 
   /// Slip in two directions that has just begun; null: none. They must outlive this object.
   void set_slip_starts(SlipStarts* starts) { slip_starts_ = starts; }
+  /// The state at which the right-hand side is evaluated: x, or beside it where slip has just begun. Valid until the
+  /// next call.
+  const double* led_state(double t, const double* x, const double* u) {
+    return is_slip_starting() ? slip_starts_->lead(t, x, u) : x;
+  }
   /// In a given mode of the contacts.
   int rhs_of(int contacts, double t, const double* x, double* dx) {
     return motion(t, x, inputs(t), mode_with_contacts(contacts), dx);
