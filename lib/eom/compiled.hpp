@@ -13,11 +13,11 @@
 #define EOM_RUNTIME_INLINE inline
 #endif
 
-namespace eom {
+namespace eom::detail {
 
 /// Part of the names of compiled functions: a program does not link with a library of another version, or one whose
 /// types have other sizes (also those of the standard library).
 template <unsigned version, std::size_t... sizes>
 struct Layout {};
 
-}  // namespace eom
+}  // namespace eom::detail

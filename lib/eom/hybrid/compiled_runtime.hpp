@@ -11,9 +11,10 @@
 
 namespace eom::hybrid {
 
-using RuntimeLayout = Layout<EOM_VERSION, sizeof(Problem), sizeof(Code), sizeof(Contact), sizeof(contacts::Set),
-                             sizeof(Signal), sizeof(Sample), sizeof(WatchedEvent), sizeof(expressions::Table),
-                             sizeof(expressions::Step), sizeof(RunResult), sizeof(EndErrorEstimate), sizeof(Reason),
-                             sizeof(Event), sizeof(MethodChoice), sizeof(Statistics), sizeof(Result)>;
+using RuntimeLayout =
+    eom::detail::Layout<EOM_VERSION, sizeof(Problem), sizeof(Code), sizeof(Contact), sizeof(contacts::Set),
+                        sizeof(Signal), sizeof(Sample), sizeof(WatchedEvent), sizeof(expressions::Table),
+                        sizeof(expressions::Step), sizeof(RunResult), sizeof(EndErrorEstimate), sizeof(Reason),
+                        sizeof(Event), sizeof(MethodChoice), sizeof(Statistics), sizeof(Result)>;
 
 }  // namespace eom::hybrid

@@ -170,8 +170,7 @@ class Model {
     forget_contact_forces();
     std::fill(u_.begin() + static_cast<std::ptrdiff_t>(scene_inputs_), u_.end(), 0.0);
     inputs(t);
-    const int code = forces_->solve(t, x, u_.data(), choice);
-    if (code != 0) return code;
+    if (const int code = forces_->solve(t, x, u_.data(), choice); code != 0) return code;
     solved_choice_ = choice;
     if (forces_->all_open()) flight_ = forces_->changes();
     solved_t_ = t;
@@ -190,8 +189,7 @@ class Model {
     const double* u = inputs(t);
     const double* const at = led_state(t, x, u);
     int code = motion(t, at, u, mode_.data(), dx);
-    // A branch that is frozen beyond its surface may have no value there (a root). The unfrozen expression always has
-    // one.
+    // A branch that is frozen beyond its surface may have no value there (a root). The unfrozen expression has one.
     if (code != 0 && mode_.has_frozen_branches()) code = motion(t, at, u, mode_without_branches(), dx);
     if (at != x) std::copy_n(x + n_, n_, dx);  // rates are those of x
     return code;
@@ -199,8 +197,7 @@ class Model {
 
   /// Slip in two directions that has just begun; null: none. They must outlive this object.
   void set_slip_starts(SlipStarts* starts) { slip_starts_ = starts; }
-  /// The state at which the right-hand side is evaluated: x, or beside it where slip has just begun. Valid until the
-  /// next call.
+  /// The place of the right-hand side: x, or beside it where slip has just begun. Valid until the next call.
   const double* led_state(double t, const double* x, const double* u) {
     return is_slip_starting() ? slip_starts_->lead(t, x, u) : x;
   }
@@ -268,8 +265,7 @@ class Model {
   int events(double t, const double* x, double* g) {
     if (code_->events == nullptr) return 0;
     // Events of the model may be functions of the forces; those of contacts depend on their signs only.
-    using contacts::ForceChoice;
-    const ForceChoice choice = problem_.events.empty() ? ForceChoice::admissible : ForceChoice::unique;
+    const auto choice = problem_.events.empty() ? contacts::ForceChoice::admissible : contacts::ForceChoice::unique;
     if (const int code = solve_contacts(t, x, choice); code != 0) return code;
     const int code = code_->events(t, x, parameters(), inputs(t), mode_.data(), g);
     if (code != 0 || !sliding_.any()) return code;
@@ -311,7 +307,6 @@ class Model {
   };
   /// Whether all contacts are known to be open: their forces among the inputs are 0.
   bool is_in_flight() const { return flight_ && *flight_ == forces_->changes(); }
-  bool is_slip_starting() const { return slip_starts_ != nullptr && slip_starts_->any(); }
   int accelerations(double t, const double* x, const double* u, double* qddot) {
     dx_.resize(code_->layout().size());
     const auto evaluate = [&](const int* mode) {
@@ -343,6 +338,7 @@ class Model {
       return result;
     }
   };
+  bool is_slip_starting() const { return slip_starts_ != nullptr && slip_starts_->any(); }
   // Both are valid until the next call.
   const int* mode_without_branches() {
     other_ = mode_;
@@ -387,8 +383,7 @@ class Model {
   SlipStarts* slip_starts_ = nullptr;
   bool inputs_move_;       // some input varies between its jumps
   std::vector<double> w_;  // output of Code::prepare
-  std::vector<double> dfdx_, x_;
-  std::vector<double> h_, y_, g_, dx_;
+  std::vector<double> dfdx_, x_, h_, y_, g_, dx_;
   std::size_t scene_inputs_ = std::numeric_limits<std::size_t>::max();  // inputs before those of contacts
   ContactSystem contact_system_{this};
   std::unique_ptr<contacts::ContactForces> forces_;
