@@ -195,7 +195,7 @@ TEST_CASE("commands and the library get compiled code and runs from pipeline::Co
       {"emit/shared_library/loaded_model.hpp", {}},
       {"emit/shared_library/loaded_batch.hpp", {}},
       {"emit/shared_library/build.hpp", {"bench/libraries.cpp"}},  // adapters of other libraries, no models
-      {"run/bind.hpp", {"stress/start.cpp"}},                      // constraints of a start
+      {"run/bind.hpp", {}},
       // Requests of BoundRun, observed step by step.
       {"run/integration.hpp",
        {"analysis/benchmark.cpp", "analysis/stress_test.cpp", "bench/measure.cpp", "stress/reference_solution.hpp"}},
