@@ -8,6 +8,7 @@
 #include <eom/hybrid/problem.hpp>
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
 #include "abi/functions.hpp"
@@ -138,8 +139,9 @@ std::shared_ptr<const emit::RunDescription> run_text(DerivedModel& derived, cons
   for (std::size_t i = 0; i < derived.model.samples.size(); ++i) {
     const std::vector<symbolic::Ref> times = times_of(derived.mechanics, derived.model.samples[i]);
     if (derived.mechanics.dag->symbols(times).empty()) continue;
-    if (auto table = run::make_table(*derived.mechanics.dag, times, run::run_variables(derived.candidates.front())))
-      described->problem.samples[i].times = std::move(*table);
+    auto table = run::make_table(*derived.mechanics.dag, times, run::run_variables(derived.candidates.front()));
+    if (!table) throw std::logic_error("the times of a sample have a symbol without a value");
+    described->problem.samples[i].times = std::move(*table);
   }
   fix_parameters(described->problem, fixed);
   auto text = std::make_shared<emit::RunDescription>();

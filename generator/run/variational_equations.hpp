@@ -30,7 +30,7 @@ struct VariationalEquations {
     constexpr double least = 1e-8, part = 1e-2, rounding = 1e-19;
     const bool fine = !coarse && has_slip_of_two();
     const double relative = fine ? std::max(part * rtol, std::min(least, rounding / rtol)) : std::max(rtol, least),
-                 absolute = std::max((fine ? part : 1) * atol, 1e-3 * relative);
+                 absolute = fine ? std::max(part * atol, 1e-3 * relative) : std::max(atol, 1e-3 * least);
     if (context.contacts) context.contacts->set_tolerances(relative, absolute);
     if (context.solved_contacts && has_slip_of_two()) context.solved_contacts->set_tolerances(relative, absolute);
   }

@@ -46,11 +46,12 @@ class VariationalJumps {
   /// Which events and surfaces interrupt.
   std::vector<eom::EventFunction> watched_functions();
 
+  /// Of the integration that follows. coarse: those of slip in two directions, where rounding ended an earlier one.
+  void set_tolerances(double rtol, double atol, bool coarse = false);
+
   // The following change total.x or point.x: x, then s of each direction times its scale. False of those with a result:
   // f has no value, and the run ends. All throw Error{stage "run"} if an interruption does not follow smoothly.
 
-  /// Of the integration that follows. coarse: those of slip in two directions, where rounding ended an earlier one.
-  void set_tolerances(double rtol, double atol, bool coarse = false);
   /// At the start: the samples there, and s at the fixed time t0.
   bool start(eom::Result& total);
   /// At the end of a segment that is not the last one. The next one begins.

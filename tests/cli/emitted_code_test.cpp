@@ -220,6 +220,47 @@ TEST_CASE("--fix: a parameter becomes a number, and the array of parameters keep
   CHECK(all["info"]["parameters"].size() == 6);
 }
 
+TEST_CASE("--fix: the times of samples become numbers, or are refused where another parameter decides them too") {
+  const Folder folder;
+  folder.write("sampled.toml", R"toml(format = 1
+[parameters]
+T = 0.25
+share = 0.5
+[discrete]
+n = 0
+[coordinates]
+x = {}
+[[particle]]
+name = "P"
+mass = 1
+position = "x*E1"
+[[force]]
+on = "P"
+force = "(n - x)*E1"
+[[sample]]
+every = "T"
+offset = "share*T"
+set = { n = "n + 1" }
+[scene.default]
+t = [0, 1]
+)toml");
+  const auto emitted = [&](const Words& fix) {
+    Words words{"emit", "sampled.toml", "-o", ".", "--target", "c", "--with", "run"};
+    words.insert(words.end(), fix.begin(), fix.end());
+    expect(0, folder, words);
+    return std::pair{folder.read("sampled_run.hpp"), folder.read("sampled.c")};
+  };
+  const auto open = emitted({});
+  CHECK(contains(open.first, "Op::parameter"));
+  CHECK(contains(open.second, "every_formula"));
+  const auto fixed = emitted({"--fix", "T,share"});
+  CHECK_FALSE(contains(fixed.first, "Op::parameter"));
+  CHECK_FALSE(contains(fixed.second, "every_formula"));
+  CHECK_FALSE(contains(fixed.second, "offset_formula"));
+  CHECK(contains(expect(2, folder, {"emit", "sampled.toml", "-o", ".", "--target", "c", "--fix", "T"}).err,
+                 "depend on a parameter that is fixed and on another one"));
+}
+
 TEST_CASE("C: --output takes coordinates and rates too, in the requested order") {
   const Folder folder;
   expect(0, folder, {"emit", "cart_pendulum", "-o", ".", "--target", "c", "--output", "energy,theta_dot,x"});

@@ -138,6 +138,11 @@ radius = "R"
 TEST_CASE("contact tables: errors say what is wrong and where") {
   CHECK(error_of("[[contact]]\nname = \"c\"\n").find("what touches what") != std::string::npos);
   CHECK(error_of("[[contact]]\nname = \"c\"\nlimits = { x = [1] }\n").find("1 limits of 'x'") != std::string::npos);
+  for (const char* wrong : {"[1, -1]", "[1, 1]", "[\"2.5\", 1]"}) {
+    CAPTURE(std::string(wrong));
+    CHECK(error_of("[[contact]]\nname = \"c\"\nlimits = { x = " + std::string(wrong) + " }\n")
+              .find("the lower one is not below the upper one") != std::string::npos);
+  }
   CHECK(error_of("[[contact]]\nname = \"c\"\nlimits = { x = [0, 1] }\nbdoy = \"box\"\n").find("has no key 'bdoy'") !=
         std::string::npos);
   CHECK(error_of("[[contact]]\nname = \"c\"\ncorners = [1, 2, 3]\non = \"ground\"\n").find("has no body") !=
