@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "eom/contacts/slip_start.hpp"
 #include "run/central_differences.hpp"
 #include "run/contact_changes.hpp"
 
@@ -19,24 +20,12 @@ bool slips_in_two_directions(const contacts::ContactForces& forces, std::size_t 
   return at.slip.size() == 2 && at.sticks && at.width == contacts::none && forces.has_friction(j);
 }
 
-/// The derivative of the angle of friction at slip w by a change of this slip: that of led_direction() of
-/// slip_start.hpp.
+/// The derivative of the angle of friction at slip w by a change of this slip.
 double turn_of(const contacts::ContactForces& forces, std::size_t j, const std::array<double, 2>& w,
                const std::array<double, 2>& change) {
-  const double speed = std::hypot(w[0], w[1]), least = forces.least_slip(), end = forces.start_slip();
-  if (!(speed > least)) return 0;  // it keeps the direction in which it began
-  const std::array<double, 2> n{w[0] / speed, w[1] / speed};
-  const double along = n[0] * change[0] + n[1] * change[1], turn = (n[0] * change[1] - n[1] * change[0]) / speed;
   const contacts::ContactState& state = forces.states()[j];
-  if (!state.starts || speed >= end) return turn;
-  const std::array<double, 2>& began = state.direction;
-  const double own = (speed - least) / (end - least), own_change = along / (end - least);
-  const std::array<double, 2> sum{(1 - own) * began[0] + own * n[0], (1 - own) * began[1] + own * n[1]};
-  const double square = sum[0] * sum[0] + sum[1] * sum[1];
-  if (!(square > 0)) return 0;
-  const std::array<double, 2> change_of_sum{own_change * (n[0] - began[0]) - own * turn * n[1],
-                                            own_change * (n[1] - began[1]) + own * turn * n[0]};
-  return (sum[0] * change_of_sum[1] - sum[1] * change_of_sum[0]) / square;
+  const double least = forces.least_slip(), end = state.starts ? forces.start_slip() : least;
+  return contacts::turn_of_led_direction(w, change, state.direction, least, end);
 }
 
 }  // namespace

@@ -34,6 +34,24 @@ inline std::array<double, 2> led_direction(const std::array<double, 2>& w, const
   return length > 0 ? std::array<double, 2>{sum[0] / length, sum[1] / length} : began;
 }
 
+/// The derivative of the angle of led_direction() by a change of the slip w, at fixed `began`. It is 0 at slips that
+/// have no direction.
+inline double turn_of_led_direction(const std::array<double, 2>& w, const std::array<double, 2>& change,
+                                    const std::array<double, 2>& began, double least, double end) {
+  const double speed = std::hypot(w[0], w[1]);
+  if (!(speed > least)) return 0;
+  const std::array<double, 2> n{w[0] / speed, w[1] / speed};
+  const double along = n[0] * change[0] + n[1] * change[1], turn = (n[0] * change[1] - n[1] * change[0]) / speed;
+  if (speed >= end) return turn;
+  const double own = (speed - least) / (end - least), own_change = along / (end - least);
+  const std::array<double, 2> sum{(1 - own) * began[0] + own * n[0], (1 - own) * began[1] + own * n[1]};
+  const double square = sum[0] * sum[0] + sum[1] * sum[1];
+  if (!(square > 0)) return 0;
+  const std::array<double, 2> change_of_sum{own_change * (n[0] - began[0]) - own * turn * n[1],
+                                            own_change * (n[1] - began[1]) + own * turn * n[0]};
+  return (sum[0] * change_of_sum[1] - sum[1] * change_of_sum[0]) / square;
+}
+
 /// Whether a slip w that began along `began` is large enough to end, or has a direction of its own away from that one.
 inline bool has_started(const std::array<double, 2>& w, const std::array<double, 2>& began, double least, double end) {
   const double speed = std::hypot(w[0], w[1]);
