@@ -3,9 +3,9 @@
 // that decides at each event. Out: a Result as of a single run.
 //
 // A crossing is located on the dense output of the step and then refined: the method repeats the step from its start to
-// the crossing, and the crossing is corrected with the value found there until it moves by at most 1e-12 of the step.
-// State and time of an event therefore have the accuracy of the step, not of the dense output, and after_step (a
-// projection) has been applied to the state. The next step starts there.
+// the crossing, and the crossing is corrected with the value found there until it moves by at most 1e-12 of the step,
+// or until that value is rounding. State and time of an event therefore have the accuracy of the step, not of the dense
+// output, and after_step (a projection) has been applied to the state. The next step starts there.
 //
 // Events at the end t1 are applied. The errors of the steps may put such an event behind the end: one that follows
 // within rtol times the length of the run (1e-9 at most) counts as at the end.
@@ -202,8 +202,8 @@ class Run {
       double next = t;
       const auto look = [&](const StepView& view) {
         if (view.t1 != t) return true;
-        final = g_(view.t1, view.x1.data(), values_.data()) != 0 || !std::isfinite(values_[i]) || values_[i] == 0 ||
-                trial + 1 == most_corrections;
+        final = g_(view.t1, view.x1.data(), values_.data()) != 0 || !std::isfinite(values_[i]) ||
+                trial + 1 == most_corrections || is_rounding(i, trial > 0 ? value_before : 0);
         if (!final && trial > 0 && !jumps)
           jumps = std::abs(values_[i]) > std::max(0.5 * std::abs(value_before), jump_share * locator_.largest()[i]);
         if (jumps) {
@@ -239,6 +239,14 @@ class Run {
       t = next;
     }
     return continues;
+  }
+
+  /// Whether no change of the time makes the value of the function smaller, after the value `before` (0: none).
+  bool is_rounding(std::size_t i, double before) const {
+    const double value = std::abs(values_[i]);
+    const double rounding = std::numeric_limits<double>::epsilon() * locator_.largest()[i];
+    return value <= share_of_rounding * rounding ||
+           (2 * value > std::abs(before) && before != 0 && value <= 16 * rounding);
   }
 
   /// dg_i/dt at the end of a step, on its dense output.
@@ -330,9 +338,10 @@ class Run {
 
   static constexpr const char* no_progress = "events follow one another without progress in time";
   static constexpr int most_corrections = 6;
-  static constexpr double jump_share = 1e-3;       // of the largest value: smaller ones may be those of a root
-  static constexpr double smallest_parts = 1e-13;  // of the time
-  static constexpr double most_at_end = 1e-9;      // of the run: later events are not those at its end
+  static constexpr double share_of_rounding = 0.25;  // the largest value is rounded by more
+  static constexpr double jump_share = 1e-3;         // of the largest value: smaller ones may be those of a root
+  static constexpr double smallest_parts = 1e-13;    // of the time
+  static constexpr double most_at_end = 1e-9;        // of the run: later events are not those at its end
   static constexpr int doublings = 40, least_proportional = 6;
   static constexpr double farthest = 0.01;  // of the step: larger corrections are rejected
 
