@@ -47,10 +47,13 @@ class StepVariables {
     place.variables.insert(place.variables.end(), u, u + inputs_);
   }
 
-  /// Box between a and b, with m midway: the control points of the parabola through the three, with a margin.
+  /// Box between a and b, with m midway: the control points of the parabola through the three, with a margin. The
+  /// margin falls faster than the width of the box: of variables with nearly the same motion, such as the places of two
+  /// bodies that move together, a difference has to be bounded.
   const std::vector<expressions::SlopedInterval>& box(const StepPlace& a, const StepPlace& m,
                                                       const StepPlace& b) const {
-    constexpr double beyond = 0.05;  // of its width: terms beyond second order within a box
+    constexpr double share = 0.05, narrow = 0.25;                       // of the width of a box; of the step
+    const double beyond = share * std::min(1.0, (b.s - a.s) / narrow);  // terms beyond second order within a box
     box_.resize(a.variables.size());
     for (std::size_t v = 0; v < box_.size(); ++v) {
       const double x = a.variables[v], z = b.variables[v], control = 2 * m.variables[v] - (x + z) / 2;
