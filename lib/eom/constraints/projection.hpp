@@ -65,7 +65,7 @@ class Projection {
         before_(2 * n_) {}
 
   /// From this number of constraints on, matrices are kept from one state to the next.
-  static constexpr Index many_rows = 16;
+  static constexpr Index many_rows = 6;
 
   /// The constraints are others now.
   void reset() { positions_.has_inverse = velocities_.has_inverse = false; }
