@@ -276,8 +276,11 @@ class Search {
 
 bool find_blocked_directions(Mechanics& m) {
   if (std::none_of(m.contacts.begin(), m.contacts.end(), has_friction)) return true;
-  if (m.free.empty()) return true;                   // the motion is prescribed, and friction acts against it
-  if (m.free.size() < m.active.size()) return true;  // reported elsewhere
+  if (m.free.empty()) return true;  // the motion is prescribed, and friction acts against it
+  const auto unilateral = static_cast<std::size_t>(
+      std::count_if(m.contacts.begin(), m.contacts.end(), [](const Contact& contact) { return contact.unilateral; }));
+  if (m.free.size() + unilateral < m.active.size()) return true;  // reported elsewhere
+  if (m.free.size() < m.active.size()) return false;              // not all contacts can be closed, as two stops
   // Sample points on the constraints, if any are found: some directions are blocked only there.
   std::optional<Search> search;
   search.emplace(m, OneFormSpace::SampleSet::on_constraints);

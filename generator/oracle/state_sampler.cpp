@@ -277,6 +277,16 @@ bool StateSampler::give_up_closing(OpenContactSet& contact_set) {
   return true;
 }
 
+// A state with these contacts closed has no values, or is outside the ranges: the next one has others, as this one does
+// after many that failed.
+void StateSampler::try_other_contacts(OpenContactSet& contact_set) {
+  const bool closes = contact_set.open.size() < unilateral_constraints_.size();
+  if (contact_set.reached)
+    ++turn_;
+  else if (closes && ++contact_set.outside == inside_patience)
+    leave_one_open();
+}
+
 // Leaves one more contact open: replaces the current set by sets with each of its closed contacts open.
 void StateSampler::leave_one_open() {
   const std::set<std::size_t> open = contact_sets_[turn_ % contact_sets_.size()].open;
@@ -319,15 +329,13 @@ State StateSampler::next() {
     } catch (const OutOfRange& outside) {
       // The projection closes a distant contact only outside a chart: it cannot be closed within the ranges.
       if (contact_set.reached && give_up_closing(contact_set)) continue;
-      const bool closes = contact_set.open.size() < unilateral_constraints_.size();
-      if (contact_set.reached)
-        ++turn_;
-      else if (closes && ++contact_set.outside == inside_patience)
-        leave_one_open();
+      try_other_contacts(contact_set);
       reject(outside.what());
     } catch (const RejectedState& rejected) {
+      try_other_contacts(contact_set);
       reject(rejected.what());
     } catch (const Singular& singular) {
+      try_other_contacts(contact_set);
       reject(singular.what());
     }
   }

@@ -65,6 +65,7 @@ class StateSampler {
     bool reached = false;
   };
   bool give_up_closing(OpenContactSet& contact_set);
+  void try_other_contacts(OpenContactSet& contact_set);
   void leave_one_open();
   double uniform();                // in (0, 1)
   double uniform_symmetric();      // in (-1, 1)

@@ -361,3 +361,45 @@ TEST_CASE("impacts: Stronge's law is refused for slip in two directions, and for
                "restitution = 1\nfriction = { static = 0.2, dynamic = 0.2 }\n[impacts]\nlaw = \"stronge\"");
   refused(ball, "'c_1' can slip in two directions");
 }
+
+// More contacts than degrees of freedom, which cannot all be closed.
+TEST_CASE("contacts: a mass between two stops with dry friction") {
+  const Folder folder;
+  folder.write(
+      "model.toml",
+      "format = 1\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { cartesian = [\"x\", \"0\"] }\n[[force]]\n"
+      "name = \"rub\"\ndry = { coordinate = \"x\", normal = 9.81, static = 0.1, dynamic = 0.1 }\n[[contact]]\n"
+      "name = \"stop\"\nlimits = { x = [-0.3, 0.35] }\nrestitution = 0.5\n"
+      "[scene.default]\nt = [0, 2]\ninitial = { x = 0, x_dot = 1.5 }\n");
+  const Json run = document(folder, {"run", "model.toml"});
+  // It brakes at f over the ways to the stops, and rests between them.
+  constexpr double f = 0.981;
+  double v = std::sqrt(1.5 * 1.5 - 2 * f * 0.35), t = (1.5 - v) / f;
+  REQUIRE(run["events"].size() == 3);
+  CHECK(run["events"][0]["name"] == "stop_x_upper");
+  CHECK(run["events"][0]["t"].get<double>() == doctest::Approx(t).epsilon(1e-10));
+  v /= 2;
+  CHECK(run["events"][1]["kind"] == "reverse");
+  CHECK(run["events"][2]["kind"] == "stick");
+  CHECK(run["events"][2]["t"].get<double>() == doctest::Approx(t + v / f).epsilon(1e-10));
+  CHECK(run["final"]["x"].get<double>() == doctest::Approx(0.35 - v * v / (2 * f)).epsilon(1e-10));
+}
+
+// The outer two of three balls on a line never touch.
+TEST_CASE("contacts: three balls on a line") {
+  const Folder folder;
+  std::string balls;
+  for (const char* i : {"1", "2", "3"})
+    balls += "[[particle]]\nname = \"p" + std::string(i) + "\"\nmass = 1\nposition = { cartesian = [\"x" + i +
+             "\", \"0\"] }\n";
+  folder.write("model.toml", "format = 1\n" + balls +
+                                 "[[contact]]\nname = \"c\"\nspheres = [\"p1\", \"p2\", \"p3\"]\nradius = 0.02\n"
+                                 "restitution = 1\n[scene.default]\nt = [0, 1]\ninitial = { x1 = 0.1, x2 = 0.25, x3 = "
+                                 "0.45, x1_dot = 1 }\n");
+  const Json run = document(folder, {"run", "model.toml"});
+  REQUIRE(run["events"].size() == 2);  // equal masses exchange their speeds
+  CHECK(run["events"][0]["t"].get<double>() == doctest::Approx(0.11).epsilon(1e-10));
+  CHECK(run["events"][1]["t"].get<double>() == doctest::Approx(0.11 + 0.16).epsilon(1e-10));
+  CHECK(run["final"]["x1"].get<double>() == doctest::Approx(0.21).epsilon(1e-10));
+  CHECK(run["final"]["x3_dot"].get<double>() == doctest::Approx(1).epsilon(1e-10));
+}
