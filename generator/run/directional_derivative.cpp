@@ -15,12 +15,19 @@ constexpr int smaller_differences = -4, most_differences = 8;  // powers of 2; n
 
 constexpr double tolerance = 1e-6;  // of a slope
 
+/// Steps that change the state as a whole, and its component that changes the most.
+struct StepScales {
+  double widest, narrowest;
+};
+
 /// Whether slopes by narrower differences are those by wider ones, but for their rounding. Far from the point a
-/// function may be as smooth, with another slope. widest: of the differences; it tells which slopes are small.
-bool agree(const Slopes& wider, const Slopes& narrower, const std::vector<double>& middle, double step, double widest) {
-  constexpr double rounding = 1e-13;
+/// function may be as smooth, with another slope. scales: they tell which slopes are small.
+bool agree(const Slopes& wider, const Slopes& narrower, const std::vector<double>& middle, double step,
+           const StepScales& scales) {
+  constexpr double rounding = 1e-13, of_fastest = 1e-2;
   const double largest = largest_magnitude(middle), error = rounding * largest / step;
-  if (error > tolerance * std::max(largest_magnitude(narrower.value), largest / widest)) return false;
+  const double small = std::max(largest / scales.widest, of_fastest * largest / scales.narrowest);
+  if (error > tolerance * std::max(largest_magnitude(narrower.value), small)) return false;
   for (std::size_t i = 0; i < middle.size(); ++i) {
     const double allowed = tolerance * std::abs(narrower.value[i]) + error;
     if (!(std::abs(wider.value[i] - narrower.value[i]) <= allowed)) return false;
@@ -29,21 +36,24 @@ bool agree(const Slopes& wider, const Slopes& narrower, const std::vector<double
 }
 
 /// The components that move, and the time, by as much as they are.
-double widest_step(const DifferenceScales& scales, const std::vector<double>& x, double dt,
-                   const std::vector<double>& dx) {
+StepScales step_scales(const DifferenceScales& scales, const std::vector<double>& x, double dt,
+                       const std::vector<double>& dx) {
   constexpr double moves = 1e-8;  // of the largest change: less is rounding
   constexpr double part = 1e-2;   // of the states of the run, where the state itself has no scale
   const double size = largest_magnitude(dx), by_time = scales.span / std::abs(dt);
-  if (size == 0) return by_time;
-  double widest = 0, typical = 0;
+  if (size == 0) return {by_time, by_time};
+  double widest = 0, typical = 0, narrowest = by_time;
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (std::abs(dx[i]) <= moves * size) continue;
     widest = std::max(widest, std::abs(x[i] / dx[i]));
-    typical = std::max(typical, std::max(std::abs(x[i]), scales.states[i]) / std::abs(dx[i]));
+    const double own = std::max(std::abs(x[i]), scales.states[i]) / std::abs(dx[i]);
+    typical = std::max(typical, own);
+    if (own > 0) narrowest = std::min(narrowest, own);
   }
   if (typical == 0) typical = std::max(1.0, largest_magnitude(scales.states)) / size;
   if (widest <= DifferenceScales::near_zero * typical) widest = part * typical;
-  return dt == 0 ? widest : std::min(widest, by_time);
+  if (dt != 0) widest = std::min(widest, by_time);
+  return {widest, std::min(narrowest, widest)};
 }
 
 }  // namespace
@@ -81,8 +91,8 @@ std::vector<double> derivative_along(const DifferenceScales& scales, double t, c
                                      const FunctionOfState& values) {
   const std::vector<double> middle = values(t, x);
   if (largest_magnitude(dx) == 0 && dt == 0) return std::vector<double>(middle.size(), 0.0);
-  double step = std::ldexp(1.0, std::ilogb(widest_step(scales, x, dt, dx)));
-  const double widest = step;
+  const StepScales steps = step_scales(scales, x, dt, dx);
+  double step = std::ldexp(1.0, std::ilogb(steps.widest));
   std::optional<Slopes> wider;
   for (int attempt = 0; attempt < most_differences; ++attempt) {
     step = std::ldexp(step, smaller_differences);
@@ -93,7 +103,7 @@ std::vector<double> derivative_along(const DifferenceScales& scales, double t, c
       beside.push_back(values(t + offset * dt, std::move(at)));
     }
     Slopes found = slopes(middle, beside, step);
-    if (wider && found.smooth && agree(*wider, found, middle, step, widest)) return wider->value;
+    if (wider && found.smooth && agree(*wider, found, middle, step, steps)) return wider->value;
     wider.reset();
     if (found.smooth) wider = std::move(found);
   }
