@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "run/central_differences.hpp"
@@ -13,10 +14,46 @@ namespace eomgen::run {
 namespace {
 
 constexpr double relative_difference = 1e-3;  // of the state
+constexpr int nearer = -4;                    // power of 2, from one nearness to the next
 
-/// Weights of the derivative to order 6 from the scenes beside at h/2, h/4 and h/8, in the order of difference_offsets,
-/// times h. Scenes are as far away as their values change smoothly, and 1/m is not smooth enough for order 4.
-constexpr std::array<double, 8> order_six{0, 0, 1.0 / 45, -1.0 / 45, -40.0 / 45, 40.0 / 45, 256.0 / 45, -256.0 / 45};
+/// A value beside the point of a derivative, with its weights in a difference and in one of lower order, both times h.
+/// Their difference shows whether h is small enough: where a body rolls on a small obstacle, a part of the distance to
+/// the origin is not.
+struct WeightedOffset {
+  double offset, weight, lower;
+};
+
+/// Orders 4 and 2, offsets in units of h.
+constexpr std::array<WeightedOffset, 4> by_state{
+    {{2, -1.0 / 12, 0}, {-2, 1.0 / 12, 0}, {1, 8.0 / 12, 0.5}, {-1, -8.0 / 12, -0.5}}};
+constexpr double remainder_by_state = 1e-5;  // of the lower order: that of the higher one is as its square
+
+/// Orders 6 and 4 from the scenes beside at h/2, h/4 and h/8, in the order of difference_offsets. Scenes are as far
+/// away as their values change smoothly, and 1/m is not smooth enough for order 4.
+constexpr std::array<WeightedOffset, 8> by_scene{{{0, 0, 0},
+                                                  {0, 0, 0},
+                                                  {1.0 / 2, 1.0 / 45, 0},
+                                                  {-1.0 / 2, -1.0 / 45, 0},
+                                                  {1.0 / 4, -40.0 / 45, -8.0 / 12},
+                                                  {-1.0 / 4, 40.0 / 45, 8.0 / 12},
+                                                  {1.0 / 8, 256.0 / 45, 64.0 / 12},
+                                                  {-1.0 / 8, -256.0 / 45, -64.0 / 12}}};
+constexpr double remainder_by_scene = 1e-9;
+
+/// A difference of the right-hand side and of the slips of contacts, and the same to a lower order.
+struct Difference {
+  std::vector<double> slope, lower;
+  Slips rates;
+  double largest = 0;  // value
+
+  /// Whether both orders agree, or rounding hides what they differ by.
+  bool is_smooth(double remainder, double h) const {
+    constexpr double rounding = 1e-14;
+    double change = 0;
+    for (std::size_t i = 0; i < slope.size(); ++i) change = std::max(change, std::abs(slope[i] - lower[i]));
+    return change <= remainder * largest_magnitude(slope) + rounding * largest / std::abs(h);
+  }
+};
 
 }  // namespace
 
@@ -80,6 +117,8 @@ class VariationalRun::Run {
   eom::Result run(const eom::Options& options, bool coarse) {
     eom::Result total;
     jumps_.set_tolerances(options.rtol, options.atol, coarse);
+    state_nearness_.assign(directions_.size(), 0);
+    scene_nearness_.assign(directions_.size(), 0);
     total.t = scene_.t0;
     total.x = start();
     if (!jumps_.start(total)) return total;
@@ -103,44 +142,74 @@ class VariationalRun::Run {
     return x;
   }
 
-  // f(t, x + h s) to order 4 and f(t, x, p + h dp, u + h du) to order 6.
+  // f(t, x + h s) and f(t, x, p + h dp, u + h du), each nearer until it is smooth.
   int differences(double t, const double* x, double* dx) {
     const std::vector<double> at(x, x + n_ * (directions_.size() + 1));
-    std::vector<double> state(n_), value(n_);
     SlipTurn turn(jumps_.equations(), t, at.data());
-    Slips rates;
-    const auto add = [&](VariationalEquations& in, double weight, std::size_t d) {
-      turn.hold(in);
-      if (const int code = turn.add_slips(in, t, state.data(), weight, rates); code != 0) return code;
-      if (const int code = in.context.rhs(t, state.data(), value.data()); code != 0) return code;
-      for (std::size_t i = 0; i < n_; ++i) slopes_[d * n_ + i] += weight * value[i];
-      return 0;
-    };
     std::fill(slopes_.begin(), slopes_.end(), 0.0);
     const std::vector<double> own(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(n_));
     for (std::size_t d = 0; d < directions_.size(); ++d) {
       const std::vector<double> s(at.begin() + static_cast<std::ptrdiff_t>((d + 1) * n_),
                                   at.begin() + static_cast<std::ptrdiff_t>((d + 2) * n_));
-      const double size = largest_magnitude(s);
-      rates = turn.zero();
-      const double h = size > 0 ? relative_difference * jumps_.scales().magnitude(own) / size : 0;
-      for (const auto& [offset, weight] : order_four) {
-        if (size == 0) break;
-        for (std::size_t i = 0; i < n_; ++i) state[i] = own[i] + offset * h * s[i];
-        if (const int code = add(jumps_.equations(), weight / h, d); code != 0) return code;
-      }
-      state = own;
-      const auto& beside = jumps_.neighbours(d, NeighbourInputs::of_same_times);
-      for (std::size_t k = 0; k < order_six.size() && k < beside.size(); ++k) {
-        const double weight = order_six[k] * directions_[d].scale / directions_[d].step;
-        if (weight == 0) continue;
-        if (const int code = add(jumps_.in_segment(*beside[k]), weight, d); code != 0) return code;
+      Slips rates = turn.zero();
+      for (const bool of_scene : {false, true}) {
+        if (of_scene ? directions_[d].beside.empty() : largest_magnitude(s) == 0) continue;
+        Difference found;
+        for (int& nearness = (of_scene ? scene_nearness_ : state_nearness_)[d];; ++nearness) {
+          const double h = of_scene
+                               ? VariationalJumps::step_of(directions_[d], nearness) / directions_[d].scale
+                               : std::ldexp(relative_difference * jumps_.scales().magnitude(own) / largest_magnitude(s),
+                                            nearness * nearer);
+          found = {std::vector<double>(n_), std::vector<double>(n_), turn.zero()};
+          const int code = of_scene ? add_scenes(turn, t, own, d, h, found) : add_states(turn, t, own, s, h, found);
+          if (code != 0) return code;
+          if (nearness + 1 == VariationalJumps::nearnesses ||
+              found.is_smooth(of_scene ? remainder_by_scene : remainder_by_state, h))
+            break;
+        }
+        for (std::size_t i = 0; i < n_; ++i) slopes_[d * n_ + i] += found.slope[i];
+        for (std::size_t k = 0; k < rates.size(); ++k)
+          for (std::size_t a = 0; a < 2; ++a) rates[k][a] += found.rates[k][a];
       }
       if (const int code = turn.add_turn(t, own.data(), rates, slopes_.data() + d * n_); code != 0) return code;
     }
     if (const int code = jumps_.equations().context.rhs(t, own.data(), f_.data()); code != 0) return code;
     std::copy(f_.begin(), f_.end(), dx);
     std::copy(slopes_.begin(), slopes_.end(), dx + n_);
+    return 0;
+  }
+
+  int add_states(SlipTurn& turn, double t, const std::vector<double>& own, const std::vector<double>& s, double h,
+                 Difference& sum) {
+    std::vector<double> state(n_);
+    for (const WeightedOffset& at : by_state) {
+      for (std::size_t i = 0; i < n_; ++i) state[i] = own[i] + at.offset * h * s[i];
+      if (const int code = add_value(jumps_.equations(), turn, t, state, at, h, sum); code != 0) return code;
+    }
+    return 0;
+  }
+
+  int add_scenes(SlipTurn& turn, double t, const std::vector<double>& own, std::size_t d, double h, Difference& sum) {
+    const auto& beside = jumps_.neighbours(d, NeighbourInputs::of_same_times, scene_nearness_[d]);
+    for (std::size_t k = 0; k < by_scene.size() && k < beside.size(); ++k) {
+      if (by_scene[k].weight == 0) continue;
+      if (const int code = add_value(jumps_.in_segment(*beside[k]), turn, t, own, by_scene[k], h, sum); code != 0)
+        return code;
+    }
+    return 0;
+  }
+
+  int add_value(VariationalEquations& in, SlipTurn& turn, double t, const std::vector<double>& state,
+                const WeightedOffset& at, double h, Difference& sum) {
+    turn.hold(in);
+    if (const int code = turn.add_slips(in, t, state.data(), at.weight / h, sum.rates); code != 0) return code;
+    std::vector<double> value(n_);
+    if (const int code = in.context.rhs(t, state.data(), value.data()); code != 0) return code;
+    for (std::size_t i = 0; i < n_; ++i) {
+      sum.slope[i] += at.weight / h * value[i];
+      sum.lower[i] += at.lower / h * value[i];
+    }
+    sum.largest = std::max(sum.largest, largest_magnitude(value));
     return 0;
   }
 
@@ -184,6 +253,7 @@ class VariationalRun::Run {
   VariationalJumps jumps_;
   std::size_t n_;
   std::vector<double> u_, dfdx_, dfdt_, dfdp_, dfdu_, f_, slopes_;
+  std::vector<int> state_nearness_, scene_nearness_;  // of the differences of each direction
 };
 
 VariationalRun::VariationalRun(const RunRequest& request, const RunResult& motion, const std::string& solver,

@@ -173,4 +173,90 @@ void VariationalJumps::start_contacts(const std::vector<double>& x) {
   if (jump > scene_.atol + scene_.rtol * largest_magnitude(before)) refuse_derivative("the run starts with an impact");
 }
 
+/// Changed rates of the start make sticking contacts slip. Friction ends this slip after a time in proportion to the
+/// change, with impulses along the rows of these contacts: in the limit the rates are projected onto them, in the
+/// metric of the mass matrix.
+void VariationalJumps::project_start(eom::Result& total) {
+  if (own_.context.rows.size() == 0 || !own_.context.has_contacts()) return;
+  const std::vector<double> own = state_of(total.x);
+  // Newton's method leaves the rounding of the largest component in the others.
+  const double largest = largest_magnitude(own);
+  const auto projected = [&](VariationalEquations& in, double at, std::vector<double> state) {
+    if (in.context.projection(at, state.data()) != 0) state.assign(n_, std::nan(""));
+    for (double& value : state) value += largest;
+    return state;
+  };
+  for (std::size_t d = 0; d < directions_.size(); ++d) {
+    if (directions_[d].beside.empty()) continue;
+    const std::vector<double> s = has_unit_vectors() ? directions_[d].dx : sensitivity(total.x, d);
+    if (keeps_contacts_sticking(total.t, own, d, s)) continue;
+    const auto what = [&] {
+      return fmt::format("the slip of contacts at the start does not change smoothly with {}", directions_[d].name);
+    };
+    std::vector<double> kept = by_scene(d, projected(own_, total.t, own), what, [&](VariationalEquations& in) {
+      in.enter(segment_);
+      return projected(in, total.t, own);
+    });
+    const std::vector<double> by_state =
+        derivative_along(scales_, total.t, own, 0, s, what,
+                         [&](double at, std::vector<double> state) { return projected(own_, at, std::move(state)); });
+    for (std::size_t k = 0; k < n_; ++k) kept[k] += by_state[k];
+    if (!is_slip_ended_by_friction(total.t, own, s))
+      refuse_derivative(fmt::format("with another {} a contact that sticks at the start slips", directions_[d].name));
+    if (has_unit_vectors()) throw NoAdjointEquations{"friction ends the slip of a changed start"};
+    for (std::size_t k = 0; k < n_; ++k) total.x[(d + 1) * n_ + k] = directions_[d].scale * kept[k];
+  }
+}
+
+/// Whether the state x + h s satisfies the rows of sticking contacts in the scene beside at the distance h.
+bool VariationalJumps::keeps_contacts_sticking(double t, const std::vector<double>& x, std::size_t d,
+                                               const std::vector<double>& s) {
+  constexpr double second_order = 1e-4;  // of the change of the state
+  constexpr std::size_t last = 2 * difference_distances - 2;
+  const double h = difference_offsets(step_of(directions_[d], nearnesses - 1))[last];
+  VariationalEquations& in = *neighbours(d, NeighbourInputs::of_scene, nearnesses - 1)[last];
+  in.enter(segment_);
+  std::vector<double> state = x;
+  for (std::size_t i = 0; i < n_; ++i) state[i] += h * s[i];
+  std::vector<double> kept = state;
+  if (in.context.projection(t, kept.data()) != 0) return false;
+  double moved = 0;
+  for (std::size_t i = 0; i < n_; ++i) moved = std::max(moved, std::abs(kept[i] - state[i]));
+  return moved <= second_order * std::abs(h) * largest_magnitude(s);
+}
+
+/// Whether contacts that stick at (t, x) stick again if they slip along s, in both directions.
+bool VariationalJumps::is_slip_ended_by_friction(double t, const std::vector<double>& x, const std::vector<double>& s) {
+  constexpr double part = 1e-4, of_slip = 0.1, small = 1e-3;
+  const ContactSnapshot modes = save_contacts(own_);
+  const std::size_t n = own_.problem.n(), m = own_.context.rows.size();
+  const auto slip = [&](double at, const std::vector<double>& state) {
+    std::vector<double> psi(m), A(m * n), b(m);
+    if (own_.context.rows(at, state.data(), own_.context.model.inputs(at), psi.data(), A.data(), b.data()) != 0)
+      b.assign(m, std::nan(""));
+    for (std::size_t k = 0; k < m; ++k)
+      for (std::size_t i = 0; i < n; ++i) b[k] += A[k + m * i] * state[n + i];
+    return b;
+  };
+  bool is_ended = true;
+  for (const double sign : {1.0, -1.0}) {
+    std::vector<double> slipping = x, f(n_);
+    const double by = sign * part * scales_.magnitude(x) / largest_magnitude(s);
+    for (std::size_t i = 0; i < n_; ++i) slipping[i] += by * s[i];
+    const std::vector<double> first = slip(t, slipping), start = slipping;
+    own_.context.start_contacts(t, slipping);
+    const bool has_rates = rhs(t, start.data(), f);
+    restore_contacts(own_, modes);
+    if (!has_rates) return false;
+    const double h = of_slip * std::abs(by) * largest_magnitude(s) / std::max(largest_magnitude(f), 1e-300);
+    slipping = start;
+    for (std::size_t i = 0; i < n_; ++i) slipping[i] += h * f[i];
+    const std::vector<double> later = slip(t + h, slipping);
+    for (std::size_t k = 0; k < m; ++k)
+      if (std::abs(first[k]) > small * largest_magnitude(first))
+        is_ended = is_ended && first[k] * (later[k] - first[k]) < 0;
+  }
+  return is_ended;
+}
+
 }  // namespace eomgen::run

@@ -49,6 +49,7 @@ bool VariationalJumps::start(eom::Result& total) {
   start_contacts(total.x);
   own_.enter(segment_);
   own_.context.freeze_branches(total.t, total.x.data(), true);
+  project_start(total);
   const std::vector<DueSample> due = due_samples(own_.problem, scene_.t0, scene_.t0);
   if (!due.empty()) {
     require_samples_to_stay(due);
@@ -336,8 +337,8 @@ void VariationalJumps::set_tolerances(double rtol, double atol, bool coarse) {
   own_.problem.rtol = rtol;
   own_.problem.atol = atol;
   own_.set_tolerances(rtol, atol, coarse);
-  for (Neighbours& neighbours : neighbours_) neighbours.clear();
-  neighbours_of_same_times_.clear();
+  for (auto* all : {&neighbours_, &neighbours_of_same_times_})
+    for (Neighbours& neighbours : *all) neighbours.clear();
 }
 
 double VariationalJumps::step_of(const Direction& direction, int nearness) {
@@ -349,7 +350,7 @@ const std::vector<std::unique_ptr<VariationalEquations>>& VariationalJumps::neig
                                                                                        NeighbourInputs inputs,
                                                                                        int nearness) {
   const bool of_scene = inputs == NeighbourInputs::of_scene;
-  Neighbours& all = of_scene ? neighbours_.at(static_cast<std::size_t>(nearness)) : neighbours_of_same_times_;
+  Neighbours& all = (of_scene ? neighbours_ : neighbours_of_same_times_).at(static_cast<std::size_t>(nearness));
   all.resize(directions_.size());
   std::vector<std::unique_ptr<VariationalEquations>>& made = all[d];
   if (made.empty()) {

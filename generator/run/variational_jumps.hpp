@@ -77,6 +77,8 @@ class VariationalJumps {
   const std::vector<std::unique_ptr<VariationalEquations>>& neighbours(
       std::size_t d, NeighbourInputs inputs = NeighbourInputs::of_scene, int nearness = 0);
   static constexpr int nearnesses = 3;
+  /// Of the differences of these scenes, which are at difference_offsets(step).
+  static double step_of(const Direction& direction, int nearness);
   /// A scene beside that of the run, in the segment and the mode of the run.
   VariationalEquations& in_segment(VariationalEquations& neighbour);
 
@@ -101,6 +103,9 @@ class VariationalJumps {
   bool change_contact(const eom::EventPoint& point);
   bool begins_by_jump(std::size_t function, double t, const std::vector<double>& x, const std::vector<double>& f);
   void start_contacts(const std::vector<double>& x);
+  void project_start(eom::Result& total);
+  bool keeps_contacts_sticking(double t, const std::vector<double>& x, std::size_t d, const std::vector<double>& s);
+  bool is_slip_ended_by_friction(double t, const std::vector<double>& x, const std::vector<double>& s);
   /// A change of the state and of the time at which it is reached, without scale.
   struct Change {
     std::vector<double> dx;
@@ -114,7 +119,6 @@ class VariationalJumps {
   double size_of_terms(const ValuesIn& value, double t, const std::vector<double>& x);
   double time_change(const ValuesIn& value, double t, const std::vector<double>& x, std::size_t d);
   double time_change(std::size_t function, double t, const std::vector<double>& x, std::size_t d);
-  static double step_of(const Direction& direction, int nearness);
   std::optional<std::size_t> stopping_event() const;
   bool rhs(double t, const double* x, std::vector<double>& f) { return own_.context.rhs(t, x, f.data()) == 0; }
 
@@ -127,8 +131,7 @@ class VariationalJumps {
   bool is_on_jump_ = false;
   std::vector<double> f_;
   using Neighbours = std::vector<std::vector<std::unique_ptr<VariationalEquations>>>;
-  std::array<Neighbours, nearnesses> neighbours_;  // per direction, made where needed
-  Neighbours neighbours_of_same_times_;
+  std::array<Neighbours, nearnesses> neighbours_, neighbours_of_same_times_;  // per direction, made where needed
 };
 
 }  // namespace eomgen::run

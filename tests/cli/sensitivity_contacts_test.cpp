@@ -337,3 +337,54 @@ TEST_CASE("sensitivity: bounces that accumulate are refused by name") {
   CHECK(contains(expect(2, folder, {"run", "ball_chain", "--sensitivity", "e"}).err,
                  "accumulate and end in lasting contact at t = 0.496"));
 }
+
+// The obstacle and the start move together, by a part of the distance to the origin that is larger than the obstacle.
+TEST_CASE("sensitivity: a disc that slides off a small cylinder far from the origin") {
+  const Folder folder;
+  folder.write("model.toml",
+               "format = 1\n[parameters]\nm = 0.3\nr = 0.05\nc = 0.4\ng = 9.81\n[[body]]\nname = \"d\"\nmass = \"m\"\n"
+               "inertia = \"m*r^2/2\"\nposition = { cartesian = [\"x\", \"y\"] }\nrotation = { axis = \"E3\", angle = "
+               "\"th\" }\n[[force]]\ngravity = \"-g*E2\"\n[[contact]]\nname = \"c\"\nbody = \"d\"\nshape = { sphere = "
+               "\"r\" }\non = { cylinder = 0.01, point = \"-c*E2\", axis = \"E3\" }\n[impacts]\nlaw = \"moreau\"\n"
+               "[scene.default]\nt = [0, 0.1]\ninitial = { x = 0, y = \"0.01 + r - c\", x_dot = 0.2, th_dot = -4 }\n");
+  for (const char* c : {"0.4", "20"}) {
+    CAPTURE(std::string(c));
+    const Json run = document(folder, {"run", "model.toml", "--set", std::string("c=") + c, "--sensitivity", "c"});
+    const Json& found = run["sensitivities"]["values"]["c"];
+    CHECK(std::abs(found["x"].get<double>()) < 1e-10);  // rounding of differences
+    CHECK(std::abs(found["y"].get<double>() + 1) < 1e-10);
+    CHECK(std::abs(found["y_dot"].get<double>()) < 1e-9);
+  }
+}
+
+TEST_CASE("sensitivity: friction ends the slip of a body whose start rolls or rests") {
+  const Folder folder;
+  const auto derivative = [&](const std::string& by, const std::string& state) {
+    const Json run = document(folder, {"run", "model.toml", "--sensitivity", by, "--gradient", state, "--by", by});
+    const double value = run["sensitivities"]["values"][by][state];
+    CHECK(run["gradients"]["values"][state][by].get<double>() == doctest::Approx(value).epsilon(1e-11));
+    return value;
+  };
+  folder.write(
+      "model.toml",
+      "format = 1\n[parameters]\nR = 0.1\n[[body]]\nname = \"d\"\nmass = 1\ninertia = \"1[kg]*R^2/2\"\nposition "
+      "= { cartesian = [\"x\", \"0\", \"z\"] }\nrotation = { axis = \"E2\", angle = \"th\" }\n[[force]]\n"
+      "gravity = \"-9.81*E3\"\n[[constraint]]\nname = \"floor\"\nrolling = { body = \"d\", shape = { sphere = "
+      "\"R\" }, on = \"ground\" }\nfriction = { static = 0.5, dynamic = 0.4 }\n[scene.default]\nt = [0, 1]\n"
+      "initial = { x = 0, x_dot = 1, z = \"R\", th_dot = \"1/R\" }\n");
+  CHECK(derivative("x_dot", "x") == doctest::Approx(2.0 / 3).epsilon(1e-11));  // of a disc
+  CHECK(derivative("th_dot", "x") == doctest::Approx(0.1 / 3).epsilon(1e-11));
+  const auto block = [&](const char* angle) {
+    folder.write("model.toml",
+                 "format = 1\n[parameters]\na = " + std::string(angle) +
+                     "\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { cartesian = [\"x\", \"y\"] }\n[[force]]\n"
+                     "gravity = \"9.81*sin(a)*E1 - 9.81*cos(a)*E2\"\n[[constraint]]\nname = \"floor\"\nholonomic = "
+                     "\"y\"\nfriction = { static = 0.5, dynamic = 0.4 }\n[scene.default]\nt = [0, 2]\n"
+                     "initial = { x = 0, x_dot = 0 }\n");
+  };
+  block("0.3");
+  CHECK(derivative("x_dot", "x") == 0);
+  block("0.45");  // tan a is between both coefficients: once it slips, it goes on
+  CHECK(contains(expect(2, folder, {"run", "model.toml", "--sensitivity", "x_dot"}).err,
+                 "with another x_dot a contact that sticks at the start slips"));
+}
