@@ -59,12 +59,20 @@ void require_contact_inputs(Mechanics& m) {
 
 namespace {
 
-/// Throws Error if Stronge's law is chosen and a contact that can open has two directions of slip.
-void require_one_direction(const Mechanics& m) {
+/// Throws Error if a contact that can open has friction that the law of impacts does not define: by the smooth law, or
+/// by Stronge's law with two directions of slip.
+void require_friction_in_impacts(const Mechanics& m) {
+  using Law = model::Impacts::Law;
+  if (!m.model->impacts || m.model->impacts->law == Law::newton) return;
   for (const Contact& contact : m.contacts) {
-    const bool energetic = m.model->impacts && m.model->impacts->law == model::Impacts::Law::stronge;
-    if (!energetic || !contact.unilateral || contact.dimensions() < 2 || contact.width) continue;
-    throw Error("mechanics", m.model->where(friction_law_of(m, contact).span),
+    if (!contact.unilateral || contact.dimensions() == 0) continue;
+    const model::Span where = friction_law_of(m, contact).span;
+    if (contact.width)
+      throw Error("mechanics", m.model->where(where),
+                  "friction in impacts needs Coulomb's law, and that of '" + contact.name + "' is smooth",
+                  "remove law = \"smooth\" and width, or write law = \"newton\" in [impacts], without friction");
+    if (m.model->impacts->law != Law::stronge || contact.dimensions() < 2) continue;
+    throw Error("mechanics", m.model->where(where),
                 "'" + contact.name + "' can slip in two directions, and Stronge's law is defined for one",
                 "write law = \"moreau\" or \"poisson\" in [impacts], or let the bodies move in a plane");
   }
@@ -76,7 +84,7 @@ void number_contact_inputs(Mechanics& m) {
   const auto requires_input = [](const Constraint& constraint) { return constraint.force_input.has_value(); };
   const bool constrained = std::any_of(m.constraints.begin(), m.constraints.end(), requires_input);
   if (!constrained && !needs_contact_inputs(m)) return;
-  require_one_direction(m);
+  require_friction_in_impacts(m);
   InputAdder inputs(m);
   const std::shared_ptr<const model::Model> before = m.model;
   for (Contact& contact : m.contacts) {

@@ -403,3 +403,24 @@ TEST_CASE("contacts: three balls on a line") {
   CHECK(run["final"]["x1"].get<double>() == doctest::Approx(0.21).epsilon(1e-10));
   CHECK(run["final"]["x3_dot"].get<double>() == doctest::Approx(1).epsilon(1e-10));
 }
+
+TEST_CASE("impacts: a smooth law of friction is refused where impacts have friction") {
+  const Folder folder;
+  const auto ball = [&](const std::string& law) {
+    folder.write(
+        "model.toml",
+        "format = 1\n[[body]]\nname = \"b\"\nmass = 1\ninertia = 0.004\nposition = { cartesian = [\"x\", \"0\", "
+        "\"z\"] }\nrotation = { axis = \"E2\", angle = \"th\" }\n[[force]]\ngravity = \"-9.81*E3\"\n[[contact]]\n"
+        "name = \"floor\"\nbody = \"b\"\nshape = { sphere = 0.1 }\non = \"ground\"\nfriction = { dynamic = 0.3, "
+        "law = \"smooth\", width = 1e-3 }\n[impacts]\nlaw = \"" +
+            law + "\"\n[scene.default]\nt = [0, 0.1]\ninitial = { z = 1 }\n");
+  };
+  for (const char* law : {"poisson", "moreau", "stronge"}) {
+    CAPTURE(std::string(law));
+    ball(law);
+    CHECK(contains(expect(2, folder, {"run", "model.toml"}).err,
+                   "friction in impacts needs Coulomb's law, and that of 'floor_1' is smooth"));
+  }
+  ball("newton");
+  expect(0, folder, {"run", "model.toml"});
+}
