@@ -242,14 +242,23 @@ void ContactTable::pair(const Value& at, const Part& a, const Part& b) {
 
 namespace {
 
-/// The number that is written; none: an expression.
-std::optional<ExactNumber> number_of(const Value& value) {
+/// A number that is written, with its unit in brackets or without one.
+struct WrittenNumber {
+  ExactNumber number;
+  std::string_view unit;
+};
+
+/// None: an expression.
+std::optional<WrittenNumber> number_of(const Value& value) {
   if (!value.is(Value::Kind::integer) && !value.is(Value::Kind::real) && !value.is(Value::Kind::text)) return {};
   const bool is_negative = value.text.starts_with('-');
-  ExactNumber number = parse_exact_number(std::string_view(value.text).substr(is_negative ? 1 : 0));
+  const std::string_view text = std::string_view(value.text).substr(is_negative ? 1 : 0);
+  const std::size_t unit = text.ends_with(']') ? text.find('[') : text.size();
+  if (unit == std::string_view::npos) return {};
+  ExactNumber number = parse_exact_number(text.substr(0, unit));
   if (!number.problem.empty()) return {};
   if (is_negative) number.value = -number.value;
-  return number;
+  return WrittenNumber{std::move(number), text.substr(unit)};
 }
 
 }  // namespace
@@ -262,8 +271,9 @@ void ContactTable::limits(const Value& value) {
     if (ends.size() != 2)
       fail(entry.value, fmt::format("gives {} limits of {}", ends.size(), quote(entry.key)),
            "write [\"lower\", \"upper\"]");
-    const std::array<std::optional<ExactNumber>, 2> numbers{number_of(ends[0]), number_of(ends[1])};
-    if (numbers[0] && numbers[1] && numbers[0]->value >= numbers[1]->value)
+    const std::array<std::optional<WrittenNumber>, 2> numbers{number_of(ends[0]), number_of(ends[1])};
+    if (numbers[0] && numbers[1] && numbers[0]->unit == numbers[1]->unit &&
+        numbers[0]->number.value >= numbers[1]->number.value)
       fail(entry.value,
            fmt::format("has limits of {} of which the lower one is not below the upper one", quote(entry.key)),
            "write [\"lower\", \"upper\"]");

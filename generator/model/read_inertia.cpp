@@ -131,6 +131,8 @@ std::array<NodeId, 3> InertiaReader::shape_moments(const Body& body, const Entry
 void InertiaReader::read_scalar_inertia(Body& body, const Value& value) {
   const Frame& frame = model_.frames[body.frame];
   const TypedNode J = resolver_.value(value, moment_context(fmt::format("the inertia of '{}'", frame.name)));
+  if (J.constant && cln::minusp(*J.constant))
+    resolver_.refuse_value(J, value.span, "a moment of inertia", "is negative", "it is a sum of masses times squares");
   const auto& axis = frame_sources_[body.frame].axis;
   if (!axis && frame_sources_[body.frame].keeps_attitude) return;  // it does not rotate: the moment has no effect
   if (!axis) {

@@ -138,7 +138,7 @@ radius = "R"
 TEST_CASE("contact tables: errors say what is wrong and where") {
   CHECK(error_of("[[contact]]\nname = \"c\"\n").find("what touches what") != std::string::npos);
   CHECK(error_of("[[contact]]\nname = \"c\"\nlimits = { x = [1] }\n").find("1 limits of 'x'") != std::string::npos);
-  for (const char* wrong : {"[1, -1]", "[1, 1]", "[\"2.5\", 1]"}) {
+  for (const char* wrong : {"[1, -1]", "[1, 1]", "[\"2.5\", 1]", "[\"2[m]\", \"1[m]\"]"}) {
     CAPTURE(std::string(wrong));
     CHECK(error_of("[[contact]]\nname = \"c\"\nlimits = { x = " + std::string(wrong) + " }\n")
               .find("the lower one is not below the upper one") != std::string::npos);

@@ -142,6 +142,8 @@ std::vector<WrongModel> wrong_bodies() {
        "it is a sum of masses times squares"},
       {"a negative moment in a parameter", top({{"J = \"2", "J = \"-2"}}), "4:5",
        "a moment of inertia, the parameter 'J', is negative", "it is a sum of masses times squares"},
+      {"a negative moment about one axis", top({{equal_moments, "-1"}, {angles, "{ axis = \"E3\", angle = \"phi\" }"}}),
+       "9:11", "a moment of inertia is negative", "it is a sum of masses times squares"},
       {"a matrix that is not symmetric", top({{equal_moments, "[[1, 0, 0.1], [0, 1, 0], [0.2, 0, 1]]"}}), "9:37",
        "the inertia of 'B' is not symmetric", "write the same expression on both sides of the diagonal"},
       {"a matrix of two rows", top({{equal_moments, "[[1, 0, 0], [0, 1, 0]]"}}), "9:11",
