@@ -128,6 +128,7 @@ std::shared_ptr<const emit::RunDescription> run_text(DerivedModel& derived, cons
   run::RunRequest request =
       describe_run(derived, described->scene, described->code, true, bounded_functions(derived, kinks));
   request.every = row_interval(scene);
+  request.row_subdivisions = row_subdivisions(scene);
   described->problem = run::make_problem(request, run::choose_solver(scene.solver, scene).first);
   described->problem.beyond_range = {};
   described->problem.time = scene.time;  // a run evaluates it with its own numbers

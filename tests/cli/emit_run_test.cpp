@@ -76,6 +76,18 @@ TEST_CASE("emit --with run: an eligible solver adds the functions that it needs"
   }
 }
 
+// As in `run`: where steps are shorter than the interval, more rows follow.
+TEST_CASE("emit --with run: rows follow short steps, unless the scene gives their interval or the step") {
+  const Folder folder;
+  for (const auto& [scene, follow] :
+       {std::pair{"", true}, {"every = 0.1\n", false}, {"solver = \"rk4\"\nstep = 0.01\n", false}}) {
+    CAPTURE(std::string(scene));
+    folder.write("model.toml", particle(scene));
+    expect(0, folder, {"emit", "model.toml", "-o", ".", "--target", "c", "--with", "run"});
+    CHECK(contains(folder.read("model_run.hpp"), "problem.row_subdivisions = 32;") == follow);
+  }
+}
+
 TEST_CASE("emit --with run: requested outputs come first, in their order, and the columns of the run remain") {
   const Folder folder;
   folder.write("model.toml", particle("outputs = [\"P.velocity1\"]\n"));

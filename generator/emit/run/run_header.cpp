@@ -225,6 +225,7 @@ std::string problem_text(const RunDescription& run) {
   s.set("rtol", p.rtol);
   s.set("atol", p.atol);
   if (p.fixed_step > 0) s.set("fixed_step", p.fixed_step);
+  if (p.row_subdivisions > 1) s.set("row_subdivisions", p.row_subdivisions);
   s.set("kinetic", p.kinetic);
   s.set("potential", p.potential);
   s.set("energy", p.energy);
