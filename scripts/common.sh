@@ -26,10 +26,12 @@ jobs() {
 }
 
 # configure PRESET: takes about a second if nothing changed. Always run, since only configuring finds a new folder.
-# EOMGEN_UNITY=ON in the environment compiles several files at a time (docs/testing.md).
+# A first build of the preset release takes half the processor time in groups of files (docs/testing.md); a folder that
+# exists keeps its way. EOMGEN_UNITY=ON or OFF in the environment decides for any.
 configure() {
-  local preset=$1 folder="$root/build/$1" fresh=() log
-  local options=(${EOMGEN_UNITY:+"-DEOMGEN_UNITY=$EOMGEN_UNITY"})
+  local preset=$1 folder="$root/build/$1" fresh=() log unity=${EOMGEN_UNITY-}
+  [[ $preset != release || -f $folder/CMakeCache.txt ]] || unity=${unity:-ON}
+  local options=(${unity:+"-DEOMGEN_UNITY=$unity"})
   # The build folder of a moved or copied source tree cannot be reused.
   if [[ -f $folder/CMakeCache.txt ]] && ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$folder/CMakeCache.txt"; then
     say "build/$preset was configured for another folder: configuring afresh"
