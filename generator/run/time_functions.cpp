@@ -17,12 +17,12 @@ using symbolic::Node;
 class Dependence {
  public:
   Dependence(const Dag& dag, const std::vector<std::optional<Ref>>& inputs)
-      : dag_(dag), inputs_(inputs), of_(dag.size(), unseen) {}
+      : dag_(dag), inputs_(inputs), of_(dag.size(), unvisited) {}
 
-  void see(const std::vector<Ref>& roots) {
+  void visit(const std::vector<Ref>& roots) {
     for (const Ref r : dag_.reachable(roots)) {
-      if (of_[r.id] != unseen) continue;
-      seen_.push_back(r);
+      if (of_[r.id] != unvisited) continue;
+      visited_.push_back(r);
       const Node& node = dag_[r];
       if (node.op == symbolic::Op::symbol) {
         of_[r.id] = of_symbol(dag_.symbol_of(r));
@@ -34,10 +34,10 @@ class Dependence {
   }
   int operator()(Ref r) const { return of_[r.id]; }
   /// All visited nodes, operands before their users.
-  const std::vector<Ref>& seen() const { return seen_; }
+  const std::vector<Ref>& visited() const { return visited_; }
 
  private:
-  static constexpr signed char unseen = -1;
+  static constexpr signed char unvisited = -1;
 
   signed char of_symbol(const Symbol& s) const {
     if (s.kind == SymbolKind::time) return 1;
@@ -49,7 +49,7 @@ class Dependence {
   const Dag& dag_;
   const std::vector<std::optional<Ref>>& inputs_;
   std::vector<signed char> of_;
-  std::vector<Ref> seen_;
+  std::vector<Ref> visited_;
 };
 
 class Finder {
@@ -62,7 +62,7 @@ class Finder {
     for (const std::optional<Ref>& input : inputs_) {
       if (input) roots.push_back(*input);
     }
-    depends_.see(roots);
+    depends_.visit(roots);
     roots.clear();
     system::for_each_expression(system_, [&](Ref r, system::ExpressionRole part) {
       if (part != system::ExpressionRole::output && part != system::ExpressionRole::reset) roots.push_back(r);
@@ -73,8 +73,8 @@ class Finder {
       if (output.kind == system::OutputKind::position || output.kind == system::OutputKind::velocity)
         roots.push_back(output.value);
     }
-    depends_.see(roots);
-    for (const Ref r : depends_.seen()) {
+    depends_.visit(roots);
+    for (const Ref r : depends_.visited()) {
       if (symbolic::is_kink(dag_[r].op)) add_surface(r);
     }
     roots.resize(moving);
@@ -117,7 +117,7 @@ class Finder {
         wanted[node.args[k].id] = wanted[node.args[k].id] || depends_(node.args[k]) == 1;
     }
     std::vector<Ref> functions;
-    for (const Ref r : depends_.seen()) {
+    for (const Ref r : depends_.visited()) {
       if (!wanted[r.id]) continue;
       const bool input = dag_[r].op == symbolic::Op::symbol && dag_.symbol_of(r).kind == SymbolKind::input;
       functions.push_back(input ? *inputs_[dag_.symbol_of(r).index] : r);

@@ -27,7 +27,7 @@ class ContactForces {
   isHeld(j) { return this.contacts[j].gap !== undefined; }
   slips(j) { return this.contacts[j].slip || []; }
   // Whether the friction of a contact follows from its normal force and its slip.
-  rubs(j) { return this.isClosed(j) && this.slips(j).length > 0 && !this.isSticking(j); }
+  hasFriction(j) { return this.isClosed(j) && this.slips(j).length > 0 && !this.isSticking(j); }
 
   // Rows at a state; u without forces of contacts.
   readRows(t, x, u) { return this.live.code.contact_rows(t, x, this.live.p, u, null, this.c) === 0; }
@@ -53,10 +53,10 @@ class ContactForces {
     if (w.length === 1) return [this.mode[j].mode === -1 ? -1 : 1];
     return ledDirection(w, this.mode[j].direction, this.leastSlip, this.mode[j].starts ? this.startSlip() : this.leastSlip);
   }
-  // A unit force: inputs and their shares. The normal one with the friction that follows from it, if `rubs`.
-  normalPattern(j, rubs) {
+  // A unit force: inputs and their shares. The normal one with the friction that follows from it, if `withFriction`.
+  normalPattern(j, withFriction) {
     const at = this.contacts[j], inputs = [[at.force_input, 1]];
-    if (rubs && this.rubs(j)) {
+    if (withFriction && this.hasFriction(j)) {
       const strength = this.c[at.dynamic_coefficient] * this.c[at.normal_scale] * this.mode[j].sign;
       this.direction(j).forEach((d, a) => inputs.push([at.friction_input + a, -strength * d]));
     }
@@ -68,7 +68,7 @@ class ContactForces {
   // Accelerations without forces of contacts but for friction with a given normal force, which stays in u.
   readFree(t, x, u) {
     this.contacts.forEach((at, j) => {
-      if (this.isHeld(j) || !this.rubs(j)) return;
+      if (this.isHeld(j) || !this.hasFriction(j)) return;
       const force = this.c[at.dynamic_coefficient] * Math.abs(this.c[at.given_normal]);
       this.direction(j).forEach((d, a) => { u[at.friction_input + a] = -force * d; });
     });
@@ -124,7 +124,7 @@ class ContactForces {
         this.push(u, pattern, forces[k]);
         if (pattern.component >= 0) { this.passToStop(u, pattern, forces[k]); return; }
         this.lambda[pattern.j] = forces[k];
-        if (this.rubs(pattern.j)) this.margins[pattern.j] = W[k][k];
+        if (this.hasFriction(pattern.j)) this.margins[pattern.j] = W[k][k];
       });
     }
     this.contacts.forEach((at, j) => this.slips(j).forEach((_, a) => { this.phi[j][a] = u[at.friction_input + a]; }));
@@ -168,14 +168,14 @@ class ContactForces {
   // Whether friction sticks along the normal of contact j, as of a coordinate on its end stop: their rows are one.
   isPreventedBySticking(j) {
     const at = this.contacts[j];
-    if (!at.unilateral || this.rubs(j)) return false;
+    if (!at.unilateral || this.hasFriction(j)) return false;
     return this.contacts.some((_, i) => i !== j && this.isSticking(i) && this.slips(i).some((row) => this.ratio(row, at.normal) !== 0));
   }
   // What friction would take of a force that presses on a contact along its direction is the force of that contact.
   passToStop(u, tangent, force) {
     const row = this.slips(tangent.j)[tangent.component];
     for (let j = 0; j < this.contacts.length; ++j) {
-      if (j === tangent.j || !this.isClosed(j) || !this.contacts[j].unilateral || this.rubs(j)) continue;
+      if (j === tangent.j || !this.isClosed(j) || !this.contacts[j].unilateral || this.hasFriction(j)) continue;
       const lambda = force * this.ratio(row, this.contacts[j].normal);
       if (!(lambda > 0)) continue;
       this.push(u, tangent, -force);

@@ -6,7 +6,7 @@ class SolvedContacts extends ContactTransitions {
     return this.contacts.flatMap((at, j) => {
       const result = this.isHeld(j) ? [{j, k: 0}] : [];
       if (this.isClosed(j) && this.slips(j).length > 0 && at.sticks) result.push({j, k: 1});
-      if (this.rubs(j) && this.isHeld(j)) result.push({j, k: 2});
+      if (this.hasFriction(j) && this.isHeld(j)) result.push({j, k: 2});
       return result;
     });
   }

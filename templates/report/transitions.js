@@ -12,9 +12,9 @@ function collision({normal, tangential = 0, nn, nt = 0, tt = 0, friction = 0, re
   };
   let isCompressing = true, compression = 0, given = 0;  // work of the normal impulse
   for (let phase = 0; phase < 8; ++phase) {  // slip, rest or reversed slip, in compression and in restitution
-    const rubs = tt > 0 && friction > 0, holding = rubs ? -nt / tt : 0;
-    const share = !rubs ? 0 : tangential === 0 ? Math.min(friction, Math.max(-friction, holding)) : tangential > 0 ? -friction : friction;
-    const sticks = rubs && tangential === 0 && share === holding, a = nn + share * nt, b = sticks ? 0 : nt + share * tt;
+    const hasFriction = tt > 0 && friction > 0, holding = hasFriction ? -nt / tt : 0;
+    const share = !hasFriction ? 0 : tangential === 0 ? Math.min(friction, Math.max(-friction, holding)) : tangential > 0 ? -friction : friction;
+    const sticks = hasFriction && tangential === 0 && share === holding, a = nn + share * nt, b = sticks ? 0 : nt + share * tt;
     let end = forWork(normal, a, Math.max(0, -restitution * restitution * compression - given));
     if (isCompressing) end = a > 0 ? -normal / a : Infinity;
     const stop = tangential * b < 0 && share !== 0 ? -tangential / b : Infinity, step = Math.min(end, stop);

@@ -24,7 +24,7 @@ class BasinStatistics {
   /// `within`: tolerance of each coordinate and rate, in SI units. Angles are compared modulo full turns.
   BasinStatistics(const SteadyMotions& found, double within);
 
-  /// Names of the entries of a final state, in the order that see() expects.
+  /// Names of the entries of a final state, in the order that classify() expects.
   const std::vector<std::string>& names() const { return names_; }
   /// Counts a run with this final state.
   void classify(const std::vector<double>& state);

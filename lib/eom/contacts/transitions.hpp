@@ -28,7 +28,7 @@ struct Hint {
 };
 
 /// A state a short time after a crossing, in the modes before it, where the function that crossed is clearly negative.
-/// At the crossing itself both modes obey the laws; only what follows tells which contacts change together.
+/// At the crossing itself both modes obey the laws; only what follows decides which contacts change together.
 struct LaterState {
   double t = 0;
   std::vector<double> x, u;  // u has no contact forces
