@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "run/central_differences.hpp"
@@ -46,12 +47,11 @@ struct Difference {
   Slips rates;
   double largest = 0;  // value
 
-  /// Whether both orders agree, or rounding hides what they differ by.
-  bool is_smooth(double remainder, double h) const {
-    constexpr double rounding = 1e-14;
-    double change = 0;
-    for (std::size_t i = 0; i < slope.size(); ++i) change = std::max(change, std::abs(slope[i] - lower[i]));
-    return change <= remainder * largest_magnitude(slope) + rounding * largest / std::abs(h);
+  /// The change from one order to the other, beyond the rounding of the values.
+  double change(double rounding, double h) const {
+    double result = 0;
+    for (std::size_t i = 0; i < slope.size(); ++i) result = std::max(result, std::abs(slope[i] - lower[i]));
+    return std::max(0.0, result - rounding / std::abs(h));
   }
 };
 
@@ -155,17 +155,26 @@ class VariationalRun::Run {
       for (const bool of_scene : {false, true}) {
         if (of_scene ? directions_[d].beside.empty() : largest_magnitude(s) == 0) continue;
         Difference found;
-        for (int& nearness = (of_scene ? scene_nearness_ : state_nearness_)[d];; ++nearness) {
+        int& nearness = (of_scene ? scene_nearness_ : state_nearness_)[d];
+        for (double before = std::numeric_limits<double>::infinity();;) {
           const double h = of_scene
                                ? VariationalJumps::step_of(directions_[d], nearness) / directions_[d].scale
                                : std::ldexp(relative_difference * jumps_.scales().magnitude(own) / largest_magnitude(s),
                                             nearness * nearer);
-          found = {std::vector<double>(n_), std::vector<double>(n_), turn.zero()};
-          const int code = of_scene ? add_scenes(turn, t, own, d, h, found) : add_states(turn, t, own, s, h, found);
+          Difference next{std::vector<double>(n_), std::vector<double>(n_), turn.zero()};
+          const int code = of_scene ? add_scenes(turn, t, own, d, h, next) : add_states(turn, t, own, s, h, next);
           if (code != 0) return code;
-          if (nearness + 1 == VariationalJumps::nearnesses ||
-              found.is_smooth(of_scene ? remainder_by_scene : remainder_by_state, h))
+          const double change = next.change(rounding_of_values(next.largest), h);
+          if (!(change < before) && !found.slope.empty()) {  // wider differences are better
+            --nearness;
             break;
+          }
+          found = std::move(next);
+          before = change;
+          const double remainder = of_scene ? remainder_by_scene : remainder_by_state;
+          if (change <= remainder * largest_magnitude(found.slope) || nearness + 1 == VariationalJumps::nearnesses)
+            break;
+          ++nearness;
         }
         for (std::size_t i = 0; i < n_; ++i) slopes_[d * n_ + i] += found.slope[i];
         for (std::size_t k = 0; k < rates.size(); ++k)
@@ -177,6 +186,13 @@ class VariationalRun::Run {
     std::copy(f_.begin(), f_.end(), dx);
     std::copy(slopes_.begin(), slopes_.end(), dx + n_);
     return 0;
+  }
+
+  /// Forces of contacts may balance larger ones that are applied.
+  double rounding_of_values(double largest) {
+    constexpr double rounding = 1e-14;
+    const eom::contacts::ContactForces* const forces = jumps_.equations().context.model.contact_forces();
+    return std::max(rounding * largest, forces != nullptr ? forces->acceleration_rounding() : 0);
   }
 
   int add_states(SlipTurn& turn, double t, const std::vector<double>& own, const std::vector<double>& s, double h,
