@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <eom/ode.hpp>
+#include <string_view>
 
 #include "error.hpp"
 
@@ -23,9 +24,19 @@ std::string unfollowed_contacts(const RunRequest& request) {
 
 }  // namespace
 
+namespace {
+
+constexpr std::string_view refused = "no derivatives of the end: ";
+
+}  // namespace
+
 void refuse_derivative(const std::string& what) {
-  throw Error("run", {}, "no derivatives of the end: " + what,
-              "compare runs with changed values (--set), or sweep over them");
+  throw Error("run", {}, std::string(refused) + what, "compare runs with changed values (--set), or sweep over them");
+}
+
+std::string reason_of_refusal(const Error& error) {
+  const std::string& message = error.message();
+  return message.starts_with(refused) ? message.substr(refused.size()) : message;
 }
 
 void require_derivatives(const RunRequest& request, const RunResult& result) {

@@ -13,6 +13,8 @@ namespace eomgen::run {
 
 /// Throws Error{stage "run"}: the end has no derivatives for this reason.
 [[noreturn]] void refuse_derivative(const std::string& what);
+/// The reason that was given to refuse_derivative().
+std::string reason_of_refusal(const Error& error);
 
 /// Throws Error{stage "run"} if the end of the run has no derivatives.
 void require_derivatives(const RunRequest& request, const RunResult& result);

@@ -401,6 +401,9 @@ Gradients integrate_gradients(const RunRequest& request, const RunResult& motion
     } catch (const NoAdjointEquations& none) {
       backward.reset();
       reason = none.reason;
+    } catch (const Error& refused) {  // along one state alone: the directions that are wanted may have derivatives
+      backward.reset();
+      reason = reason_of_refusal(refused);
     }
     if (!forward) forward.emplace(request, motion, result.solver, wanted.directions, wanted.outputs);
     return (*forward)(given);

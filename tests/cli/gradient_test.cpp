@@ -352,3 +352,20 @@ TEST_CASE("gradient: quadratic drag from rest, where the speed has no slope") {
   CHECK(by_y_dot["y_dot"]["y_dot"].get<double>() == doctest::Approx(slope).epsilon(of_run));
   CHECK(by_y_dot["y"]["y_dot"].get<double>() == doctest::Approx(V / 10 * std::tanh(s)).epsilon(of_run));
 }
+
+// Beside the motion, changes of x alone leave the shell: the time of an event does not follow them.
+TEST_CASE("gradient: a particle that slides in a rough shell and leaves it has the derivatives of its sensitivities") {
+  const Folder folder;
+  folder.write(
+      "model.toml",
+      "format = 1\n[parameters]\nm = 0.3\na = 0.35\ng = 9.81\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition "
+      "= { cartesian = [\"x\", \"y\"] }\n[[force]]\ngravity = \"-g*E2\"\n[[constraint]]\nname = \"c\"\nholonomic "
+      "= \"a - norm(P)\"\nholds = \"unilateral\"\nfriction = { static = 0.3, dynamic = 0.3 }\n"
+      "[scene.default]\nt = [0, 0.8]\ninitial = { x = 0, y = \"-a\", x_dot = 3.4 }\n");
+  const Json run = document(folder, {"run", "model.toml", "--gradient", "x,y", "--by", "a", "--sensitivity", "a"});
+  for (const char* state : {"x", "y"}) {
+    CAPTURE(std::string(state));
+    const double expected = run["sensitivities"]["values"]["a"][state];
+    CHECK(run["gradients"]["values"][state]["a"].get<double>() == doctest::Approx(expected).epsilon(1e-7));
+  }
+}
