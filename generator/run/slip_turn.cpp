@@ -25,7 +25,7 @@ double turn_of(const contacts::ContactForces& forces, std::size_t j, const std::
                const std::array<double, 2>& change) {
   const contacts::ContactState& state = forces.states()[j];
   const double least = forces.least_slip(), end = state.starts ? forces.start_slip() : least;
-  return contacts::turn_of_led_direction(w, change, state.direction, least, end);
+  return contacts::friction_angle_derivative(w, change, state.direction, least, end);
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ class VariationalRun::Run {
     eom::hybrid::Model& model = context.model;
     const double* u = model.inputs(t);
     std::copy(u, u + u_.size(), u_.begin());
-    const double* const at = model.led_state(t, x, u_.data());
+    const double* const at = model.state_at_slip_start(t, x, u_.data());
     if (const int code = derivatives(t, at, model.mode().data()); code != 0) {
       // As for f: a branch that is frozen beyond its surface may have no value there.
       if (derivatives(t, at, nullptr) != 0) return code;

@@ -139,7 +139,7 @@ class AdmissibleForces {
 const startOfSlip = (rtol) => Math.max(2, 0.06 / Math.cbrt(Math.max(rtol, 1e-15)));
 
 // The unit vector of friction for a slip w that began along `began`: led to its own direction from `least` to `end`.
-function ledDirection(w, began, least, end) {
+function frictionDirection(w, began, least, end) {
   const speed = Math.hypot(...w);
   if (speed <= least) return began;
   if (speed >= end) return w.map((value) => value / speed);

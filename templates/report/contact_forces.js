@@ -51,7 +51,7 @@ class ContactForces {
       return w.map((value) => (size === 0 ? 0 : value / size));
     }
     if (w.length === 1) return [this.mode[j].mode === -1 ? -1 : 1];
-    return ledDirection(w, this.mode[j].direction, this.leastSlip, this.mode[j].starts ? this.startSlip() : this.leastSlip);
+    return frictionDirection(w, this.mode[j].direction, this.leastSlip, this.mode[j].starts ? this.startSlip() : this.leastSlip);
   }
   // A unit force: inputs and their shares. The normal one with the friction that follows from it, if `withFriction`.
   normalPattern(j, withFriction) {

@@ -188,7 +188,7 @@ class ContactModes extends ContactSearch {
     this.contacts.forEach((contact, j) => {
       const w = this.starting[j] === null ? [] : contact.slip.map((k) => y[k]), speed = Math.hypot(...w);
       if (w.length === 0 || speed >= this.startSlip(j)) return;
-      const to = ledDirection(w, this.starting[j], this.least[j], this.startSlip(j)), size = Math.max(speed, 1e-3 * this.least[j]);
+      const to = frictionDirection(w, this.starting[j], this.least[j], this.startSlip(j)), size = Math.max(speed, 1e-3 * this.least[j]);
       const [a, b] = contact.slopes.map((slopes) => slopes.map((k) => y[k])), product = (p, q) => p.reduce((sum, value, i) => sum + value * q[i], 0);
       const aa = product(a, a), ab = product(a, b), bb = product(b, b), determinant = aa * bb - ab * ab, first = size * to[0] - w[0], second = size * to[1] - w[1];
       if (!(determinant > 1e-12 * aa * bb)) return;

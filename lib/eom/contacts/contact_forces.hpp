@@ -133,7 +133,7 @@ class ContactForces {
       return {w[0] / size, w[1] / size};
     }
     if (at.slip.size() == 1) return {states_[j].mode == Mode::sliding_back ? -1.0 : 1.0, 0};
-    return led_direction(w, states_[j].direction, least_slip_, states_[j].starts ? start_slip_ : least_slip_);
+    return friction_direction(w, states_[j].direction, least_slip_, states_[j].starts ? start_slip_ : least_slip_);
   }
   /// Sets the directions of contacts, in place of those of their slip; empty: none. For derivatives, where the slip is
   /// much smaller than the widths of differences.

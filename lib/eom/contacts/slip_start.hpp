@@ -23,8 +23,8 @@ inline double start_of_slip(double rtol) {
 
 /// The unit vector of friction for a slip w that began along `began`. least: the least slip that has a direction; end:
 /// the slip at which the start ends.
-inline std::array<double, 2> led_direction(const std::array<double, 2>& w, const std::array<double, 2>& began,
-                                           double least, double end) {
+inline std::array<double, 2> friction_direction(const std::array<double, 2>& w, const std::array<double, 2>& began,
+                                                double least, double end) {
   const double speed = std::hypot(w[0], w[1]);
   if (speed <= least) return began;
   if (speed >= end) return {w[0] / speed, w[1] / speed};
@@ -34,10 +34,10 @@ inline std::array<double, 2> led_direction(const std::array<double, 2>& w, const
   return length > 0 ? std::array<double, 2>{sum[0] / length, sum[1] / length} : began;
 }
 
-/// The derivative of the angle of led_direction() by a change of the slip w, at fixed `began`. It is 0 at slips that
-/// have no direction.
-inline double turn_of_led_direction(const std::array<double, 2>& w, const std::array<double, 2>& change,
-                                    const std::array<double, 2>& began, double least, double end) {
+/// The derivative of the angle of friction_direction() by a change of the slip w, at fixed `began`. It is 0 at slips
+/// that have no direction.
+inline double friction_angle_derivative(const std::array<double, 2>& w, const std::array<double, 2>& change,
+                                        const std::array<double, 2>& began, double least, double end) {
   const double speed = std::hypot(w[0], w[1]);
   if (!(speed > least)) return 0;
   const std::array<double, 2> n{w[0] / speed, w[1] / speed};

@@ -187,7 +187,7 @@ class Model {
     if (sliding_.any()) return sliding_.evaluate(mode_, t, x, dx);
     if (const int code = solve_contacts(t, x, contacts::ForceChoice::any); code != 0) return code;
     const double* u = inputs(t);
-    const double* const at = led_state(t, x, u);
+    const double* const at = state_at_slip_start(t, x, u);
     int code = motion(t, at, u, mode_.data(), dx);
     // A branch that is frozen beyond its surface may have no value there (a root). The unfrozen expression has one.
     if (code != 0 && mode_.has_frozen_branches()) code = motion(t, at, u, mode_without_branches(), dx);
@@ -198,7 +198,7 @@ class Model {
   /// Slip in two directions that has just begun; null: none. They must outlive this object.
   void set_slip_starts(SlipStarts* starts) { slip_starts_ = starts; }
   /// The place of the right-hand side: x, or beside it where slip has just begun. Valid until the next call.
-  const double* led_state(double t, const double* x, const double* u) {
+  const double* state_at_slip_start(double t, const double* x, const double* u) {
     return is_slip_starting() ? slip_starts_->lead(t, x, u) : x;
   }
   /// In a given mode of the contacts.

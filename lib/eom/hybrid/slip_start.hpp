@@ -62,7 +62,7 @@ class SlipStarts {
       const std::array<double, 2> w = slip(j);
       const double speed = std::hypot(w[0], w[1]), size = std::max(speed, 1e-3 * least_[j]);
       if (speed >= largest(j)) continue;
-      const std::array<double, 2> to = contacts::led_direction(w, starts_[j].direction, least_[j], largest(j));
+      const std::array<double, 2> to = contacts::friction_direction(w, starts_[j].direction, least_[j], largest(j));
       // The smallest change of the rates that changes the slip by this much.
       double aa = 0, ab = 0, bb = 0;
       for (std::size_t i = 0; i < n; ++i) {
