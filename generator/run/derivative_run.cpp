@@ -22,10 +22,6 @@ std::string unfollowed_contacts(const RunRequest& request) {
   return "";
 }
 
-}  // namespace
-
-namespace {
-
 constexpr std::string_view refused = "no derivatives of the end: ";
 
 }  // namespace

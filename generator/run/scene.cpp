@@ -195,13 +195,7 @@ void require_regular(const Mechanics& m, const system::EquationSystem& system, c
   const std::vector<double> values = mass_and_rows(m, system, table, start);
   Eigen::MatrixXd M = Eigen::Map<const Eigen::MatrixXd>(values.data(), n, n);
   if (!M.allFinite() || n == 0) return;  // reported with the undefined value; no free coordinates
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const std::string& name = m.model->coordinates[system.free[static_cast<std::size_t>(i)]].name;
-    if (M(i, i) < 0)
-      throw Error("scene", m.model->where(scene.span),
-                  fmt::format("the inertia along '{}' is negative at the start: {:.6g}", name, M(i, i)),
-                  "give masses and moments of inertia of 0 or more");
-  }
+  const Eigen::VectorXd inertia = M.diagonal();
   Eigen::VectorXd scale = M.diagonal().cwiseSqrt();
   bool regular = scale.minCoeff() > 0;
   if (!system.active.empty()) {
@@ -222,6 +216,12 @@ void require_regular(const Mechanics& m, const system::EquationSystem& system, c
     regular = numeric::symmetric_eigenvalues(M)[0] > smallest_eigenvalue;
   }
   if (regular) return;
+  Eigen::Index least = 0;
+  if (inertia.minCoeff(&least) < -smallest_eigenvalue * inertia.maxCoeff())
+    throw Error("scene", m.model->where(scene.span),
+                fmt::format("the inertia along '{}' is negative at the start: {:.6g}",
+                            m.model->coordinates[system.free[static_cast<std::size_t>(least)]].name, inertia(least)),
+                "give masses and moments of inertia of 0 or more");
   constexpr double near = 1e-6;  // of a sine or cosine: its square is lost in M
   if (const model::SingularChart chart = model::find_singular_chart(
           *m.model, [&](std::uint32_t coordinate) -> std::optional<double> { return start.q[coordinate]; }, near))

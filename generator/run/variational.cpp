@@ -15,30 +15,25 @@ namespace eomgen::run {
 namespace {
 
 constexpr double relative_difference = 1e-3;  // of the state
-constexpr int nearer = -4;                    // power of 2, from one nearness to the next
 
-/// A value beside the point of a derivative, with its weights in a difference and in one of lower order, both times h.
-/// Their difference shows whether h is small enough: where a body rolls on a small obstacle, a part of the distance to
-/// the origin is not.
-struct WeightedOffset {
-  double offset, weight, lower;
+/// The weights of a value in a difference and in one of lower order, both times h. Their difference shows whether h is
+/// small enough: where a body rolls on a small obstacle, a part of the distance to the origin is not.
+struct Weights {
+  double weight, lower;
 };
 
-/// Orders 4 and 2, offsets in units of h.
-constexpr std::array<WeightedOffset, 4> by_state{
-    {{2, -1.0 / 12, 0}, {-2, 1.0 / 12, 0}, {1, 8.0 / 12, 0.5}, {-1, -8.0 / 12, -0.5}}};
-constexpr double remainder_by_state = 1e-5;  // of the lower order: that of the higher one is as its square
+constexpr double remainder_by_state = 1e-5;  // of order 2: that of order 4 is as its square
 
 /// Orders 6 and 4 from the scenes beside at h/2, h/4 and h/8, in the order of difference_offsets. Scenes are as far
 /// away as their values change smoothly, and 1/m is not smooth enough for order 4.
-constexpr std::array<WeightedOffset, 8> by_scene{{{0, 0, 0},
-                                                  {0, 0, 0},
-                                                  {1.0 / 2, 1.0 / 45, 0},
-                                                  {-1.0 / 2, -1.0 / 45, 0},
-                                                  {1.0 / 4, -40.0 / 45, -8.0 / 12},
-                                                  {-1.0 / 4, 40.0 / 45, 8.0 / 12},
-                                                  {1.0 / 8, 256.0 / 45, 64.0 / 12},
-                                                  {-1.0 / 8, -256.0 / 45, -64.0 / 12}}};
+constexpr std::array<Weights, 8> scene_weights{{{0, 0},
+                                                {0, 0},
+                                                {1.0 / 45, 0},
+                                                {-1.0 / 45, 0},
+                                                {-40.0 / 45, -8.0 / 12},
+                                                {40.0 / 45, 8.0 / 12},
+                                                {256.0 / 45, 64.0 / 12},
+                                                {-256.0 / 45, -64.0 / 12}}};
 constexpr double remainder_by_scene = 1e-9;
 
 /// A difference of the right-hand side and of the slips of contacts, and the same to a lower order.
@@ -160,7 +155,7 @@ class VariationalRun::Run {
           const double h = of_scene
                                ? VariationalJumps::step_of(directions_[d], nearness) / directions_[d].scale
                                : std::ldexp(relative_difference * jumps_.scales().magnitude(own) / largest_magnitude(s),
-                                            nearness * nearer);
+                                            nearness * VariationalJumps::nearer);
           Difference next{std::vector<double>(n_), std::vector<double>(n_), turn.zero()};
           const int code = of_scene ? add_scenes(turn, t, own, d, h, next) : add_states(turn, t, own, s, h, next);
           if (code != 0) return code;
@@ -198,32 +193,33 @@ class VariationalRun::Run {
   int add_states(SlipTurn& turn, double t, const std::vector<double>& own, const std::vector<double>& s, double h,
                  Difference& sum) {
     std::vector<double> state(n_);
-    for (const WeightedOffset& at : by_state) {
-      for (std::size_t i = 0; i < n_; ++i) state[i] = own[i] + at.offset * h * s[i];
-      if (const int code = add_value(jumps_.equations(), turn, t, state, at, h, sum); code != 0) return code;
+    for (const auto& [offset, weight] : order_four) {
+      for (std::size_t i = 0; i < n_; ++i) state[i] = own[i] + offset * h * s[i];
+      const Weights weights{weight, std::abs(offset) == 1 ? offset / 2 : 0};
+      if (const int code = add_value(jumps_.equations(), turn, t, state, weights, h, sum); code != 0) return code;
     }
     return 0;
   }
 
   int add_scenes(SlipTurn& turn, double t, const std::vector<double>& own, std::size_t d, double h, Difference& sum) {
     const auto& beside = jumps_.neighbours(d, NeighbourInputs::of_same_times, scene_nearness_[d]);
-    for (std::size_t k = 0; k < by_scene.size() && k < beside.size(); ++k) {
-      if (by_scene[k].weight == 0) continue;
-      if (const int code = add_value(jumps_.in_segment(*beside[k]), turn, t, own, by_scene[k], h, sum); code != 0)
-        return code;
+    for (std::size_t k = 0; k < scene_weights.size() && k < beside.size(); ++k) {
+      if (scene_weights[k].weight == 0) continue;
+      VariationalEquations& in = jumps_.in_segment(*beside[k]);
+      if (const int code = add_value(in, turn, t, own, scene_weights[k], h, sum); code != 0) return code;
     }
     return 0;
   }
 
-  int add_value(VariationalEquations& in, SlipTurn& turn, double t, const std::vector<double>& state,
-                const WeightedOffset& at, double h, Difference& sum) {
+  int add_value(VariationalEquations& in, SlipTurn& turn, double t, const std::vector<double>& state, const Weights& of,
+                double h, Difference& sum) {
     turn.hold(in);
-    if (const int code = turn.add_slips(in, t, state.data(), at.weight / h, sum.rates); code != 0) return code;
+    if (const int code = turn.add_slips(in, t, state.data(), of.weight / h, sum.rates); code != 0) return code;
     std::vector<double> value(n_);
     if (const int code = in.context.rhs(t, state.data(), value.data()); code != 0) return code;
     for (std::size_t i = 0; i < n_; ++i) {
-      sum.slope[i] += at.weight / h * value[i];
-      sum.lower[i] += at.lower / h * value[i];
+      sum.slope[i] += of.weight / h * value[i];
+      sum.lower[i] += of.lower / h * value[i];
     }
     sum.largest = std::max(sum.largest, largest_magnitude(value));
     return 0;

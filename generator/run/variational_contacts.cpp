@@ -176,7 +176,7 @@ void VariationalJumps::start_contacts(const std::vector<double>& x) {
 /// Changed rates of the start make sticking contacts slip. Friction ends this slip after a time in proportion to the
 /// change, with impulses along the rows of these contacts: in the limit the rates are projected onto them, in the
 /// metric of the mass matrix.
-void VariationalJumps::project_start(eom::Result& total) {
+void VariationalJumps::project_start_rates(eom::Result& total) {
   if (own_.context.rows.size() == 0 || !own_.context.has_contacts()) return;
   const std::vector<double> own = state_of(total.x);
   // Newton's method leaves the rounding of the largest component in the others.

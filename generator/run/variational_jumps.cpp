@@ -49,7 +49,7 @@ bool VariationalJumps::start(eom::Result& total) {
   start_contacts(total.x);
   own_.enter(segment_);
   own_.context.freeze_branches(total.t, total.x.data(), true);
-  project_start(total);
+  project_start_rates(total);
   const std::vector<DueSample> due = due_samples(own_.problem, scene_.t0, scene_.t0);
   if (!due.empty()) {
     require_samples_to_stay(due);
@@ -342,7 +342,6 @@ void VariationalJumps::set_tolerances(double rtol, double atol, bool coarse) {
 }
 
 double VariationalJumps::step_of(const Direction& direction, int nearness) {
-  constexpr int nearer = -4;  // power of 2
   return std::ldexp(direction.step, nearness * nearer);
 }
 

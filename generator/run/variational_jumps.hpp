@@ -77,6 +77,7 @@ class VariationalJumps {
   const std::vector<std::unique_ptr<VariationalEquations>>& neighbours(
       std::size_t d, NeighbourInputs inputs = NeighbourInputs::of_scene, int nearness = 0);
   static constexpr int nearnesses = 3;
+  static constexpr int nearer = -4;  // from one nearness to the next, as a power of 2
   /// Of the differences of these scenes, which are at difference_offsets(step).
   static double step_of(const Direction& direction, int nearness);
   /// A scene beside that of the run, in the segment and the mode of the run.
@@ -103,7 +104,7 @@ class VariationalJumps {
   bool change_contact(const eom::EventPoint& point);
   bool begins_by_jump(std::size_t function, double t, const std::vector<double>& x, const std::vector<double>& f);
   void start_contacts(const std::vector<double>& x);
-  void project_start(eom::Result& total);
+  void project_start_rates(eom::Result& total);
   bool keeps_contacts_sticking(double t, const std::vector<double>& x, std::size_t d, const std::vector<double>& s);
   bool is_slip_ended_by_friction(double t, const std::vector<double>& x, const std::vector<double>& s);
   /// A change of the state and of the time at which it is reached, without scale.

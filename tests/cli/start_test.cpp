@@ -263,3 +263,15 @@ TEST_CASE("a start beside a singular angle runs, in machine code and compiled") 
        {std::pair{"1e-7", "jit"}, {"1e-8", "jit"}, {"1e-9", "jit"}, {"1e-8", "compiled"}})
     CHECK(end(nutation, tier) == doctest::Approx(at_the_angle).epsilon(1e-6));
 }
+
+// The moment of the crank is that of its disk less that of the hole.
+TEST_CASE("a negative inertia at the start is named, with its coordinate") {
+  const Folder folder;
+  folder.write("model.toml",
+               "format = 1\n[parameters]\nJ = 0.01\nhole = 0.004\n[[body]]\nname = \"B\"\nmass = 1\ninertia = \"J - "
+               "hole\"\nposition = { cartesian = [\"x\", \"0\"] }\nrotation = { axis = \"E3\", angle = \"th\" }\n"
+               "[scene.default]\nt = [0, 1]\n");
+  expect(0, folder, {"run", "model.toml"});
+  CHECK(contains(expect(2, folder, {"run", "model.toml", "--set", "J=0.001"}).err,
+                 "the inertia along 'th' is negative at the start: -0.003"));
+}

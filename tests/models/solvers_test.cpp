@@ -211,9 +211,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "solvers: ggl ends where dop853 with projection does, constraints at rounding and nothing projected; it reports "
-    "why "
-    "it refuses a model") {
+    "solvers: ggl ends where dop853 with projection does, constraints at rounding and nothing projected; it "
+    "reports why it refuses a model") {
   // among them a loop of bodies, constraints on velocities, and one that moves
   for (const char* model : {"S5_double_pendulum_cartesian", "iftomm_pendulum", "four_bar_spatial_pins", "knife_edge",
                             "P7_moving_sphere_pfaffian", "car_axis"}) {
